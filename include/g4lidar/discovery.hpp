@@ -89,7 +89,7 @@ class G4LIDAR_API port_monitor {
 struct recognised_lidar {
   const g4lidar::model* model = nullptr;  ///< The most usual of `candidates`. Valid forever.
   std::uint32_t baud = 0;                 ///< Of the port; 0 where bytes take no time.
-  /// As it reported; is_known() is false for one-way lidars that report nothing.
+  /// As it reported; is_known() is false for one-way lidars that report nothing, or whose model was named.
   device_information device{};
   bool was_scanning = false;  ///< Packets arrived. A two-way lidar was stopped.
   /// All models between which the bytes do not decide, `model` first: an X2 and an X3 send the same.
@@ -99,7 +99,7 @@ struct recognised_lidar {
 /// What is known before a search.
 struct search_options {
   const g4lidar::model* model =
-      nullptr;             ///< Not searched for if it is set: only its rates are tried.
+      nullptr;  ///< Not searched for if it is set: its rates are tried, and where something sends at all of several, those of variants. A one-way one gets no byte.
   std::uint32_t baud = 0;  ///< Not searched for if it is not 0.
   /// Whether the user has named the port: if nothing arrives, DTR gets a pulse, because some models need
   /// it to turn. Takes 2 s more.
@@ -117,7 +117,7 @@ struct search_options {
 ///
 /// Fails with silence, garbage (bytes arrived, but no packet and no answer), other_device (a product that is
 /// not supported; the subject names it), does_not_stop, or like the transport. The subject of silence and
-/// garbage lists the rates.
+/// garbage lists the rates, and that of garbage states how many bytes arrived and how they begin.
 [[nodiscard]] G4LIDAR_API result<recognised_lidar> search(transport& port, std::int64_t deadline_ns,
                                                           const search_options& options = {});
 

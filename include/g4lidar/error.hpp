@@ -80,17 +80,19 @@ enum class error_detail : std::uint8_t {
   unsupported_product,  ///< other_device: a product of the manufacturer with another protocol.
   answered_before,  ///< silence, garbage: the lidar had identified itself, so its model and its baud rate are right.
   searched,  ///< silence: no model was named, and no lidar answered or sent at any rate that was tried.
-  no_revolution,  ///< timeout: packets arrive, but no revolution was complete.
-  resting,        ///< timeout: the motor stands, because background_reader::rest() was called.
-  of_file,        ///< timeout: no scan of the file that is played was due.
-  not_sent,       ///< timeout: the port did not accept the bytes of a command.
-  other_source,   ///< bad_option: the option is for another kind of source (source.hpp).
+  no_revolution,   ///< timeout: packets arrive, but no revolution was complete.
+  resting,         ///< timeout: the motor stands, because background_reader::rest() was called.
+  of_file,         ///< timeout: no scan of the file that is played was due.
+  not_sent,        ///< timeout: the port did not accept the bytes of a command.
+  other_source,    ///< bad_option: the option is for another kind of source (source.hpp).
+  several_models,  ///< bad_file: the parts of a recording state different models of lidar.
 };
 
 /// One error. Trivially copyable, never allocates.
 class G4LIDAR_API error {
  public:
-  /// `subject` is what the error is about (a path, an option and its value); cut at 159 bytes.
+  /// `subject` is what the error is about (a path, an option and its value); cut at 159 bytes. Control characters and
+  /// what is not valid UTF-8 become escapes such as `\x0A`.
   error(task doing, problem code, std::string_view subject = {}, int system_errno = 0,
         error_detail detail = error_detail::usual) noexcept;
 

@@ -60,7 +60,8 @@ struct parameter {
 [[nodiscard]] G4LIDAR_API parameter_value value_of(const answer& given);
 /// The value that a setting is to have; errors as those of value_in().
 [[nodiscard]] G4LIDAR_API result<answer> answer_of(const setting_info& of,
-                                                   const parameter_value& wanted);
+                                                   const parameter_value& wanted,
+                                                   const model* which = nullptr);
 
 /// The values of one lidar. Functions without another word: only in the thread that reads it.
 class G4LIDAR_API lidar_parameters {
@@ -88,6 +89,7 @@ class G4LIDAR_API lidar_parameters {
   using device_change = std::pair<const parameter*, answer>;
   [[nodiscard]] std::string set_device(lidar* device, std::span<const device_change> changes);
   void shape();
+  [[nodiscard]] const model* known_model() const;
 
   shaping_options how_;
   filter_settings now_;

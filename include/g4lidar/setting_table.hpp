@@ -53,9 +53,11 @@ struct setting_info {
 /// refuses what its own model does not have.
 [[nodiscard]] G4LIDAR_API std::optional<answer> value_of(const setting_info& of,
                                                          std::int32_t number) noexcept;
-/// The value that `text` states, which one of the models at least has: "9k" or "9000", "7.5", "cw", "on". *Allocates.*
-/// Fails with bad_option: subject() has the name of the setting, and the values that are possible, with their unit.
-[[nodiscard]] G4LIDAR_API result<answer> value_in(const setting_info& of, std::string_view text);
+/// The value that `text` states: "9k" or "9000", "7.5", "cw", "on". `which` has it, or one of the models at least where
+/// that is null. *Allocates.* Fails with bad_option: subject() has the name of the setting, and the values that are
+/// possible, with their unit.
+[[nodiscard]] G4LIDAR_API result<answer> value_in(const setting_info& of, std::string_view text,
+                                                  const model* which = nullptr);
 /// The row of setting_info::values with this value; null if there is none. *Pure.*
 [[nodiscard]] G4LIDAR_API const setting_value* find_value(const answer& value) noexcept;
 /// The number of a value; nothing if it is of no setting, or none of its values. *Pure.*

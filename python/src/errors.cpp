@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "errors.hpp"
 
+#include "g4lidar/export/printable.hpp"
 #include "g4lidar/lidar_options.hpp"
 
 namespace g4lidar::python {
@@ -43,7 +44,11 @@ void raise(const error& why) {
 const model* model_of(const std::optional<std::string>& word) {
   if (!word) return nullptr;
   const model* const found = model_named(*word);
-  if (found == nullptr) raise_bad_option("model: '" + *word + "' is not one of " + model_words());
+  constexpr std::size_t enough = 40;
+  if (found == nullptr) {
+    raise_bad_option("model: '" + printable(word->substr(0, enough)) +
+                     (word->size() > enough ? "...'" : "'") + " is not one of " + model_words());
+  }
   return found;
 }
 

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <string>
 
+#include "core/number_text.hpp"
 #include "g4lidar/lidar_options.hpp"
 #include "g4lidar/recording/writer.hpp"
 #include "g4lidar/version.hpp"
@@ -125,7 +126,7 @@ bool take_model(const char* word, const model*& into) noexcept {
 int refuse_model(g4lidar_error* out, const char* given) {
   const std::string_view word(given != nullptr ? given : "");
   return fail(out, G4LIDAR_BAD_OPTION, G4LIDAR_CONFIGURING,
-              "model: there is none with the word '" + std::string(word.substr(0, 40)) + "'",
+              "model: there is none with the word " + in_quotes(word),
               "Give one of " + model_words() + ".");
 }
 

@@ -44,7 +44,10 @@ std::optional<request> change_of(int setting, std::int32_t wanted) noexcept {
   const setting_info* const row = row_of(setting);
   if (row == nullptr) return std::nullopt;
   const auto value = value_of(*row, wanted);
-  return value ? change_to(*value) : request{row->change, 0xFFFF};
+  if (value) return change_to(*value);
+  constexpr std::int32_t none = 0xFFFF;
+  const bool is_said = row->type == setting_type::decimal && wanted >= 0 && wanted < none;
+  return request{row->change, static_cast<std::uint16_t>(is_said ? wanted : none)};
 }
 
 std::optional<request> step_of(std::int32_t step_chz) noexcept {

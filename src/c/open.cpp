@@ -2,6 +2,8 @@
 // Lidars: options and opening.
 #include <array>
 #include <chrono>
+#include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -44,7 +46,14 @@ const char* take_settings(const g4lidar_options& given, lidar_options& into) noe
   }};
   for (std::size_t i = 0; i < settings.size(); ++i) {
     if (settings[i].number == 0) continue;  // as it is
-    const auto value = value_of(all_settings()[i], settings[i].number);
+    const setting_info& of = all_settings()[i];
+    std::optional<answer> value = value_of(of, settings[i].number);
+    // The lidar refuses it, with the limits of its model.
+    constexpr std::int32_t most = std::numeric_limits<std::uint16_t>::max();
+    const bool is_held = settings[i].number > 0 && settings[i].number <= most;
+    if (!value && of.type == setting_type::decimal && is_held) {
+      value = scan_frequency{static_cast<std::uint16_t>(settings[i].number)};
+    }
     if (!value) return settings[i].error;
     set_option(into, *value);
   }

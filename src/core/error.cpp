@@ -10,6 +10,7 @@
 
 #include "g4lidar/error_code.hpp"
 #include "one_of.hpp"
+#include "printable_text.hpp"
 
 namespace g4lidar {
 namespace {
@@ -116,7 +117,7 @@ struct detail_words {
   std::string_view cause;
   std::string_view advice;
 };
-constexpr std::array<detail_words, 18> all_details{{
+constexpr std::array<detail_words, 19> all_details{{
     {"no scan arrived in time, because the motor spins up",
      "Call again or wait longer: the first scan arrives about 0.7 s after the start, later with a "
      "heavy or cold motor. If the head does not turn within 10 s, check the power supply."},
@@ -179,8 +180,11 @@ constexpr std::array<detail_words, 18> all_details{{
      "plug it in again."},
     {"the source cannot use this option",
      "Omit the option: a port has no playback, and a file has no settings and no connection."},
+    {"parts of this recording state different models of lidar",
+     "Recordings of two lidars have been joined, or the file is damaged: use the recording of each "
+     "lidar by itself."},
 }};
-static_assert(all_details.size() == static_cast<std::size_t>(error_detail::other_source));
+static_assert(all_details.size() == static_cast<std::size_t>(error_detail::several_models));
 
 constexpr bool in_order() {
   for (std::size_t i = 0; i < all_words.size(); ++i) {
@@ -239,12 +243,14 @@ class category final : public std::error_category {
 
 error::error(g4lidar::task doing, problem code, std::string_view subject, int system_errno,
              error_detail detail) noexcept
-    : size_(static_cast<std::uint8_t>(std::min(subject.size(), subject_.size()))),
-      errno_(system_errno),
-      doing_(doing),
-      code_(code),
-      detail_(detail) {
-  std::copy_n(subject.begin(), size_, subject_.begin());
+    : errno_(system_errno), doing_(doing), code_(code), detail_(detail) {
+  bool is_full = false;
+  each_printable(subject.substr(0, subject_.size()), [&](std::string_view piece) {
+    is_full = is_full || piece.size() > subject_.size() - size_;
+    if (is_full) return;
+    std::copy(piece.begin(), piece.end(), subject_.begin() + size_);
+    size_ = static_cast<std::uint8_t>(size_ + piece.size());
+  });
 }
 
 bool error::is_fatal() const noexcept {

@@ -14,16 +14,20 @@
 
 #include <tl/expected.hpp>
 
+#include "printable_text.hpp"
+
 namespace g4lidar {
 
 /// A value, or why the text is not valid.
 template <class Value>
 using text_result = tl::expected<Value, std::string>;
 
-/// "'east'"
+/// "'east'": a word of a user or of a file in a message, as one line, and not more than its begin.
 inline std::string in_quotes(std::string_view text) {
+  constexpr std::size_t enough = 40;
   std::string quoted = "'";  // appended to: g++ 12 warns of other forms without a reason
-  return quoted.append(text).append("'");
+  each_printable(text.substr(0, enough), [&quoted](std::string_view piece) { quoted += piece; });
+  return quoted.append(text.size() > enough ? "...'" : "'");
 }
 
 /// "cw, ccw", "4000, 8000 or 9000": the texts of all, with `last` before the last one.

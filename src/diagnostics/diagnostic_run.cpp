@@ -22,6 +22,7 @@
 #include "g4lidar/transport/tcp_port.hpp"
 #include "live_run.hpp"
 #include "stages.hpp"
+#include "transport/port_holder.hpp"
 
 namespace g4lidar {
 namespace {
@@ -99,7 +100,8 @@ class port_stages {
     if (real != port.path) report_.add("leads_to", real);
     if (::access(port.path.c_str(), F_OK) != 0) return give_up(problem::no_port, port.path, ENOENT);
     struct stat status{};
-    if (::stat(port.path.c_str(), &status) == 0 && !S_ISCHR(status.st_mode)) {
+    const bool is_known = ::stat(port.path.c_str(), &status) == 0;
+    if (is_known && (!S_ISCHR(status.st_mode) || is_pty_master(status))) {
       return give_up(problem::not_serial, port.path, ENOTTY);
     }
     if (const auto all = list_ports()) {

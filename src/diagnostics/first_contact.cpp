@@ -24,6 +24,12 @@ constexpr std::size_t attempts = 3;
 /// Packets arrive more often.
 constexpr std::int64_t silent_ns = 200 * ms;
 constexpr std::int64_t search_ns = 3'000 * ms;
+/// "25 bytes like an answer of another length (A5 5A 15 00 00 00) arrived."
+std::string arrived(const unrecognised_bytes& heard) {
+  const std::string text(heard.text());
+  return text.empty() ? text : text.substr(text.find_first_not_of(", ")) + " arrived.";
+}
+
 /// Answers to 90, of which most decide the model.
 constexpr int more_identities = 4;
 
@@ -57,6 +63,7 @@ first_contact::state first_contact::make(stage_report& baud) {
     baud.add("bytes_of_no_packet", garbage_);
     if (!find_other_layout(baud, link.layout(), *lidar.which)) {
       baud.find(diagnosis::wrong_baud_rate);
+      if (baud.remark.empty()) baud.remark = arrived(link.heard());
     }
   }
   return state::none;

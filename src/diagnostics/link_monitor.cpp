@@ -125,6 +125,7 @@ void link_monitor::take(const received& got, std::int64_t took_ns, const observe
   has_backlog_ = has_backlog_ && got.count == buffer_.size();
   if (to.arrival) to.arrival(what);
   layout_.take(data);
+  heard_.received(data);
   splitter_.received(data);
 }
 
@@ -137,6 +138,7 @@ void link_monitor::listen_for_quiet(std::int64_t quiet, std::int64_t until_ns) {
 
 result<void> link_monitor::write(bytes data) {
   if (is_over()) return {};
+  heard_.sent(data);
   const auto sent = transport_->write(data, transport_->now_ns() + 500 * ms);
   if (!sent && sent.error().code() != problem::cancelled) error_ = sent.error();
   return {};

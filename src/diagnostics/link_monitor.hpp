@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "driver/device_link.hpp"
+#include "driver/unrecognised_bytes.hpp"
 #include "g4lidar/core/command.hpp"
 #include "g4lidar/core/layout_recogniser.hpp"
 #include "g4lidar/core/model.hpp"
@@ -152,6 +153,8 @@ class link_monitor {
   [[nodiscard]] std::uint64_t host_pauses() const noexcept { return host_pauses_; }
   /// Of the same.
   [[nodiscard]] const layout_recogniser& layout() const noexcept { return layout_; }
+  /// All that was received and sent, but by search().
+  [[nodiscard]] const unrecognised_bytes& heard() const noexcept { return heard_; }
   /// Where the bytes come from.
   [[nodiscard]] transport& port() const noexcept { return *transport_; }
   /// The bytes that follow are those of a lidar like `which`, valid as long as this, and do not continue
@@ -181,6 +184,7 @@ class link_monitor {
   std::uint64_t host_pauses_ = 0;
   std::int64_t host_paused_ns_ = 0;
   layout_recogniser layout_;
+  unrecognised_bytes heard_;
 };
 
 /// Lowers the line DTR for this time, which stops a motor that it drives, and raises it. False if there is none.

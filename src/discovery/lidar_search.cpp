@@ -92,7 +92,7 @@ lidar_search::found lidar_search::round(bool is_first) {
   sending_ = 0;
   auto done = visit(rates_.front(), first_listening_ns);
   if (!done || *done) return done;
-  if (sending_ == 0) {
+  if (sending_ == 0 && !only_listens()) {
     done = question(rates_.front(), is_first ? answer_ns : late_answer_ns);
     if (!done || *done) return done;
   }
@@ -107,7 +107,7 @@ lidar_search::found lidar_search::round(bool is_first) {
       if (!done || *done) return done;
     }
   }
-  if (sending_ > 0) return done;
+  if (sending_ > 0 || only_listens()) return done;
   for (std::size_t i = 1; i < rates_.size(); ++i) {
     done = question(rates_[i], answer_ns);
     if (!done || *done) return done;
@@ -151,7 +151,9 @@ lidar_search::found lidar_search::question(std::uint32_t baud, std::int64_t wait
   const auto tuned = tune(baud);
   if (!tuned) return tl::unexpected(tuned.error());
   if (!*tuned) return std::nullopt;
-  const auto sent = port_.write(encode(command::device_info), port_.now_ns() + write_ns);
+  const auto ask = encode(command::device_info);
+  all_heard_.sent(ask);
+  const auto sent = port_.write(ask, port_.now_ns() + write_ns);
   if (!sent && sent.error() != problem::timeout) return tl::unexpected(sent.error());
   const auto is_enough = [this] { return heard_.device || heard_.stream.sample_bytes() != 0; };
   if (auto done = listen(in_ns(wait_ns), is_enough); !done) return tl::unexpected(done.error());
@@ -197,6 +199,7 @@ result<void> lidar_search::listen(std::int64_t until_ns, Enough is_enough) {
 
 void lidar_search::take(bytes input) {
   heard_.bytes += input.size();
+  all_heard_.received(input);
   heard_.stream.take(input);
   heard_.replies.feed(input, [this](const event& each) {
     const auto* const reply = std::get_if<response_view>(&each);
@@ -215,7 +218,7 @@ void lidar_search::take(bytes input) {
 lidar_signs lidar_search::signs() const noexcept {
   lidar_signs all;
   all.baud = port_.baud();
-  all.is_baud_certain = !has_fixed_rate_;
+  all.is_baud_certain = !has_fixed_rate_ || (options_.baud != 0 && heard_.device);
   all.sample_bytes = heard_.stream.sample_bytes();
   all.sample_rate_hz = heard_.stream.rate_hz();
   if (heard_.device) all.id = heard_.device->model;
@@ -240,6 +243,7 @@ recognised_lidar lidar_search::made(std::vector<const model*> candidates,
 
 /// Packets arrive: at least three more of one size of samples than of the others.
 lidar_search::found lidar_search::judge_stream() {
+  if (only_listens()) return made({options_.model}, signs());
   const std::int64_t informed_ns = in_ns(information_ns);
   const auto is_one_way = [](const model* row) { return row->link == link_kind::one_way; };
   const bool is_doubtful = std::ranges::any_of(models_that_fit(signs()), is_one_way);
@@ -330,15 +334,17 @@ result<std::optional<device_information>> lidar_search::stop_and_ask(const model
 
 tl::unexpected<error> lidar_search::not_found() const {
   std::string subject(port_.name());
+  if (options_.model != nullptr) subject.append(", ").append(options_.model->name);
+  subject.append(all_heard_.text());
   if (tried_.size() > 1 || options_.baud != 0) {
-    std::string_view before = " at ";
+    std::string_view before = all_heard_.count() > 0 ? ", at " : " at ";
     for (const std::uint32_t baud : tried_) {
       subject.append(before).append(std::to_string(baud));
       before = ", ";
     }
     subject.append(" baud");
   }
-  if (sending_ > 0) return failure(task::asking, problem::garbage, subject);
+  if (all_heard_.count() > 0) return failure(task::asking, problem::garbage, subject);
   const auto why = options_.model == nullptr ? error_detail::searched : error_detail::usual;
   return failure(task::asking, problem::silence, subject, 0, why);
 }

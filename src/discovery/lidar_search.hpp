@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "driver/unrecognised_bytes.hpp"
 #include "g4lidar/core/layout_recogniser.hpp"
 #include "g4lidar/discovery.hpp"
 #include "model_choice.hpp"
@@ -21,6 +22,7 @@ enum class stop_attempts : std::uint8_t;
 /// Two-way lidars are silent until they are asked; one-way lidars send always, and answer nothing. So it
 /// listens first, and asks only where it is silent: with `90`, two bytes that change nothing. Only a
 /// stream of packets that a two-way lidar may send is stopped, and once where a one-way lidar may send it, too.
+/// A one-way lidar that was named gets no byte.
 class lidar_search {
  public:
   lidar_search(transport& port, const search_options& options);
@@ -61,6 +63,10 @@ class lidar_search {
   [[nodiscard]] lidar_signs signs() const noexcept;
   [[nodiscard]] tl::unexpected<error> not_found() const;
   [[nodiscard]] error unknown(std::uint8_t id) const;
+  /// Whether the user has named a lidar that answers nothing.
+  [[nodiscard]] bool only_listens() const noexcept {
+    return options_.model != nullptr && options_.model->link == link_kind::one_way;
+  }
   [[nodiscard]] std::int64_t in_ns(std::int64_t time_ns) const noexcept;
 
   transport& port_;
@@ -72,6 +78,7 @@ class lidar_search {
   bool has_pulsed_ = false;
   std::size_t sending_ = 0;  // rates at which something sends
   hearing heard_;
+  unrecognised_bytes all_heard_;
 };
 
 }  // namespace g4lidar

@@ -30,6 +30,18 @@ std::uint32_t rate_difference(const model& row, std::uint32_t hz) noexcept {
 
 bool is_far(const model& row, std::uint32_t hz) noexcept { return rate_difference(row, hz) > 10; }
 
+/// Moves those for which `is_last` is true behind the others; both keep their order. Returns the number of the others.
+/// Not std::stable_partition, which uses a deprecated function, as clang reports.
+template <class Predicate>
+std::size_t move_back(std::vector<const model*>& all, Predicate is_last) {
+  std::vector<const model*> last;
+  std::ranges::copy_if(all, std::back_inserter(last), is_last);
+  std::erase_if(all, is_last);
+  const std::size_t others = all.size();
+  all.insert(all.end(), last.begin(), last.end());
+  return others;
+}
+
 bool is_two_way(const model* row) noexcept { return row->link == link_kind::two_way; }
 
 }  // namespace
@@ -52,7 +64,8 @@ std::vector<const model*> models_that_fit(const lidar_signs& seen) {
     return found;
   };
   const auto is_far_off = [&seen](const model* row) { return is_far(*row, seen.sample_rate_hz); };
-  std::vector<const model*> found = all_with(true, true);
+  // A number does not need an uncertain rate.
+  std::vector<const model*> found = all_with(seen.is_baud_certain || seen.id == 0, true);
   const bool is_stated = seen.id != 0 || seen.ct_id_low_bits != 0;
   const bool is_variant =
       std::ranges::none_of(models, [&seen](const model& row) { return has_rate(row, seen.baud); });
@@ -61,14 +74,12 @@ std::vector<const model*> models_that_fit(const lidar_signs& seen) {
     std::erase_if(found, is_far_off);
   }
   if (found.empty()) found = all_with(true, false);
+  // Where the rate does not decide, those whose usual number it is come first.
+  const auto has_other = [&seen](const model* row) { return row->ids[0] != seen.id; };
+  if (seen.id != 0) static_cast<void>(move_back(found, has_other));
   // A sample rate decides between models with one each; within a tenth they are equal.
-  // Not std::stable_partition, which uses a deprecated function, as clang reports.
-  std::vector<const model*> far;
-  std::ranges::copy_if(found, std::back_inserter(far), is_far_off);
-  std::erase_if(found, is_far_off);
-  const auto near_end = found.empty() ? far.size() : found.size();
-  found.insert(found.end(), far.begin(), far.end());
-  const std::span near(found.begin(), near_end);
+  const std::size_t near_count = move_back(found, is_far_off);
+  const std::span near(found.begin(), near_count == 0 ? found.size() : near_count);
   const auto is_near = [near](const model& row) {
     return std::ranges::find(near, &row) != near.end();
   };

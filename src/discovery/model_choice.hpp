@@ -28,7 +28,8 @@ struct lidar_signs {
 
 /// The models that `seen` may come from, the usual one first: all that agree with the number, the size of
 /// samples, the baud rate and the kind of connection. The baud rate is ignored where no model agrees with
-/// it and the number, where no model has it, or where it is not certain; then the CT bytes, which other devices use otherwise.
+/// it and the number, where no model has it, or where it is not certain; then the CT bytes, which other devices use
+/// otherwise. Models with the number as their usual one come before those that some devices report it of.
 /// Empty if there is none. *Allocates.*
 [[nodiscard]] std::vector<const model*> models_that_fit(const lidar_signs& seen);
 

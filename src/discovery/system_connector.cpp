@@ -74,19 +74,24 @@ error explained(const error& why, const std::string& device) {
 }  // namespace
 
 system_connector::system_connector(std::string_view device, std::uint32_t baud, const model* named)
-    : device_(device), baud_(baud), named_(named) {}
+    : device_(device), baud_(baud), named_baud_(baud), named_(named) {}
 
 result<std::unique_ptr<connector>> system_connector::make(std::string_view device,
                                                           std::uint32_t baud, const model* named) {
   return std::unique_ptr<connector>(new system_connector(device, baud, named));
 }
 
-result<std::unique_ptr<connector>> system_connector::find(
-    std::string_view device, std::uint32_t baud, const std::function<bool()>& is_cancelled) {
+result<std::unique_ptr<connector>> system_connector::find(std::string_view device,
+                                                          std::uint32_t baud,
+                                                          const std::function<bool()>& is_cancelled,
+                                                          const model* named) {
+  const std::uint32_t first_baud = named != nullptr ? named->bauds[0] : g4_model.bauds[0];
+  const bool has_one_rate = baud != 0 || (named != nullptr && named->bauds[1] == 0);
+  if (named != nullptr && has_one_rate) return make(device, baud != 0 ? baud : first_baud, named);
   std::unique_ptr<system_connector> made(
-      new system_connector(device, baud != 0 ? baud : g4_model.bauds[0], nullptr));
-  made->is_searched_ = true;
-  made->searched_baud_ = baud;
+      new system_connector(device, baud != 0 ? baud : first_baud, named));
+  made->is_searched_ = named == nullptr;
+  made->named_baud_ = baud;
   if (auto done = made->search_first(is_cancelled); !done) return tl::unexpected(done.error());
   return made;
 }
@@ -98,15 +103,17 @@ result<void> system_connector::search_first(const std::function<bool()>& is_canc
     return {};
   }
   transport& port = **opened;
-  auto lidar = search(
-      port, port.now_ns() + opening_search_ns,
-      {.baud = searched_baud_, .may_pulse_dtr = names_path(device_), .is_cancelled = is_cancelled});
+  auto lidar = search(port, port.now_ns() + opening_search_ns,
+                      {.model = named_,
+                       .baud = named_baud_,
+                       .may_pulse_dtr = named_ != nullptr || names_path(device_),
+                       .is_cancelled = is_cancelled});
   if (!lidar) {
     const error why = with_port_conflict(lidar.error(), port);
     return failure(task::opening, why.code(), why.subject(), why.system_errno(), why.detail());
   }
   named_ = lidar->model;
-  candidates_ = std::move(lidar->candidates);
+  if (is_searched_) candidates_ = std::move(lidar->candidates);
   was_stopped_ = lidar->was_scanning && named_->link == link_kind::two_way;
   if (lidar->baud != 0) baud_ = lidar->baud;
   if (named_->link == link_kind::one_way) find_place();
@@ -138,7 +145,7 @@ result<std::unique_ptr<transport>> system_connector::open_transport() {
 
 result<std::unique_ptr<transport>> system_connector::first_connect() {
   find_options how;
-  how.baud = is_searched_ ? searched_baud_ : baud_;
+  how.baud = named_baud_;
   const auto port = select_port(device_, how);
   if (!port) return tl::unexpected(port.error());
   auto opened = serial_port::open(port->path, {.baud = baud_});

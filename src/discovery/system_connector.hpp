@@ -31,12 +31,13 @@ class system_connector final : public connector {
                                                                std::uint32_t baud,
                                                                const model* named = nullptr);
 
-  /// The same, for a lidar of an unknown model: searches it now, at `baud`, or at all rates if that is 0.
-  /// The open transport is kept for the first connect(), because each opening raises DTR. Takes up to 5 s
-  /// where nothing answers or sends. Fails like search(). If the port cannot be opened, the first
-  /// connect() fails.
+  /// The same, but what is not named is searched now: the model where `named` is null, and its rate where `baud` is
+  /// 0 and the model has several. The open transport is kept for the first connect(), because each opening raises
+  /// DTR. Takes up to 5 s where nothing answers or sends. Fails like search(). If the port cannot be opened, the
+  /// first connect() fails.
   [[nodiscard]] static result<std::unique_ptr<connector>> find(
-      std::string_view device, std::uint32_t baud, const std::function<bool()>& is_cancelled);
+      std::string_view device, std::uint32_t baud, const std::function<bool()>& is_cancelled,
+      const model* named = nullptr);
 
   [[nodiscard]] result<std::unique_ptr<transport>> connect() noexcept override;
   [[nodiscard]] std::int64_t now_ns() const noexcept override { return steady_now_ns(); }
@@ -79,8 +80,8 @@ class system_connector final : public connector {
 
   std::string device_;
   std::uint32_t baud_;
-  std::uint32_t searched_baud_ = 0;  // 0: all that lidars have
-  bool is_searched_ = false;
+  std::uint32_t named_baud_;  // 0: it is searched
+  bool is_searched_ = false;  // the model
   bool was_stopped_ = false;
   const model* named_;                                          // or found
   std::vector<const model*> candidates_;                        // found

@@ -50,6 +50,7 @@ result<void> listening_driver::look() {
   const bool is_moving = stage_ == live_stage::scanning && reported.packets() != packets_;
   if (is_moving) {
     packets_ = reported.packets();
+    bytes_before_ = pipeline_.input().bytes_parsed();
     pulse_ = pulse::none;
     due_ns_ =
         receiver_.read_until_ns() + std::chrono::nanoseconds(options_.tuning.stall_time).count();
@@ -57,12 +58,17 @@ result<void> listening_driver::look() {
   // Bytes that arrived while the program was suspended are read before that.
   if (now_ns() < due_ns_ || receiver_.read_until_ns() < due_ns_) return {};
   const bool is_stalled = stage_ == live_stage::scanning;
-  const bool is_silent = is_stalled || pipeline_.input().bytes_parsed() == bytes_before_;
+  const std::uint64_t without_packet = pipeline_.input().bytes_parsed() - bytes_before_;
+  const bool is_silent = is_stalled || without_packet == 0;
   const bool may_help = !is_stalled || options_.model->motor == motor_kind::dtr;
   if (pulse_ != pulse::done && may_help) return try_pulse(is_silent);
+  constexpr std::uint64_t of_a_packet = 256;
+  if (is_stalled && without_packet > of_a_packet) {
+    return tl::unexpected(without_packets(connection_, without_packet));
+  }
   if (is_stalled) return failure(task::reading, problem::stalled, connection_.name());
   return failure(task::opening, is_silent ? problem::silence : problem::garbage,
-                 opened_as(connection_, *options_.model));
+                 opened_as(connection_, *options_.model).add(stream_.heard().text()));
 }
 
 /// Some boards start the motor, or the lidar, at an edge of DTR only.

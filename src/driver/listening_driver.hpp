@@ -36,10 +36,11 @@ class listening_driver final : public live_source {
 
   enum class pulse : std::uint8_t { none, low, done };
 
-  pulse pulse_ = pulse::none;       // of the line DTR, if the lidar is silent
-  std::int64_t due_ns_ = 0;         // when packets must have come
-  std::uint64_t packets_ = 0;       // of the stream, when due_ns_ was set
-  std::uint64_t bytes_before_ = 0;  // that were parsed before this connection
+  pulse pulse_ = pulse::none;  // of the line DTR, if the lidar is silent
+  std::int64_t due_ns_ = 0;    // when packets must have come
+  std::uint64_t packets_ = 0;  // of the stream, when due_ns_ was set
+  std::uint64_t bytes_before_ =
+      0;  // that were parsed before this connection, and with the last packet
 };
 
 }  // namespace g4lidar

@@ -57,6 +57,7 @@ result<bool> live_driver::serve() {
   if (const notice what = talk.noticed(); what != notice::none) {
     if (what == notice::stalled) return tl::unexpected(silence_error());
     report(event_of(what));
+    if (what == notice::found_scanning) listening_ = {};
     const bool is_reset = what == notice::restarted || what == notice::protection_found_on;
     if (is_reset && wants_scan_ && !set_up_again()) return tl::unexpected(silence_error());
     if (is_reset || what == notice::protection_starved) stream_.begin_points();
@@ -69,6 +70,9 @@ result<bool> live_driver::serve() {
 
 /// Of a device that has ended a scan and does not continue.
 error live_driver::silence_error() const {
+  constexpr std::uint64_t of_boot_texts = 1000;
+  const std::uint64_t skipped = pipeline_.counts().stream.skipped_bytes() - skipped_at_begin_;
+  if (skipped > of_boot_texts) return without_packets(connection_, skipped);
   if (pipeline_.scans() > scans_at_begin_)
     return {task::reading, problem::stalled, connection_.name()};
   const bool is_by_line = options_.model->motor == motor_kind::dtr;
@@ -76,7 +80,14 @@ error live_driver::silence_error() const {
   return {task::starting, problem::brown_out, connection_.name(), 0, why};
 }
 
+/// A device that scans is noticed before anything is sent: one that obeys at once is not noticed afterwards.
+bool live_driver::listens() const noexcept {
+  return now_ns() < listening_.until_ns(pipeline_.input());
+}
+
 std::int64_t live_driver::due_ns() const noexcept {
+  if (listens())
+    return std::min(stream_.next_deadline_ns(), listening_.until_ns(pipeline_.input()));
   const bool is_motor_due = setup_.starts_next() && !stream_.talk().is_busy();
   return is_motor_due ? std::min(stream_.next_deadline_ns(), stream_.motor_ready_ns())
                       : stream_.next_deadline_ns();
@@ -85,8 +96,8 @@ std::int64_t live_driver::due_ns() const noexcept {
 // ---- the connection -------------------------------------------------------------------------------
 
 result<void> live_driver::connected() {
-  // The motor starts at an edge, and the system raises the line when it opens a port.
-  if (auto lowered = stream_.set_motor(false); !lowered) return lowered;
+  const bool was_heard = is_recognised_ || connection_.from().traits().is_searched;
+  listening_ = {was_heard ? 0 : now_ns(), pipeline_.input().bytes_parsed()};
   setup_.reset_short_scans();  // the session has forgotten the scans before, too
   question_.forget_woken();
   setup_.add(setup_step::identify);
@@ -145,6 +156,7 @@ result<answer> live_driver::ask(const request& wanted, while_scanning how) {
   if (!question_.was_woken(wanted) || !stream_.talk().is_busy()) {
     question_.forget_woken();
     if (auto ready = settle(); !ready) return tl::unexpected(ready.error());
+    stream_.begin_request();
     if (const auto refused = stream_.talk().begin(wanted, now_ns(), how)) {
       return tl::unexpected(
           refusal_error(task::asking, *refused, wanted, *options_.model, connection_.name()));
@@ -165,8 +177,8 @@ result<answer> live_driver::ask(const request& wanted, while_scanning how) {
   if (!found || (!done && !is_woken)) return tl::unexpected(done.error());
   if (is_woken) connection_.wake_next_call();  // this call has its answer
   if (found->how != verdict::answered) {
-    return tl::unexpected(
-        stream_.error_after(error_of(*found, stage_, connection_, *options_.model)));
+    return tl::unexpected(stream_.error_after(
+        error_of(*found, stage_, connection_, *options_.model, stream_.heard())));
   }
   if (!setup_.is_done()) {  // after a restart
     const auto ready = settle();

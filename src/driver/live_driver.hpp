@@ -27,6 +27,7 @@ class live_driver final : public live_source {
     return !setup_.is_done() || stream_.talk().is_busy();
   }
   void leave() noexcept override;
+  [[nodiscard]] bool listens() const noexcept;
   [[nodiscard]] result<bool> serve();
   [[nodiscard]] error silence_error() const;
 
@@ -38,9 +39,27 @@ class live_driver final : public live_source {
   [[nodiscard]] result<void> answered(const device_information& who);
   [[nodiscard]] result<void> give_up(const error& why);
 
+  /// The time before the first command. An idle device is silent; the slowest lidar sends a byte in the first time, and
+  /// a packet in the second one.
+  struct first_listening {
+    static constexpr std::int64_t for_byte_ns = 30'000'000;
+    static constexpr std::int64_t for_packet_ns = 100'000'000;
+
+    std::int64_t begin_ns = 0;  // 0: it has ended
+    std::uint64_t bytes_before = 0;
+
+    [[nodiscard]] std::int64_t until_ns(const event_reader& input) const noexcept {
+      if (begin_ns == 0) return 0;
+      const bool has_bytes = input.bytes_parsed() != bytes_before;
+      return begin_ns + (has_bytes ? for_packet_ns : for_byte_ns);
+    }
+  };
+
+  first_listening listening_;
   setup_sequence setup_;
   open_question question_;
-  std::uint64_t scans_at_begin_ = 0;  // whole revolutions before the start
+  std::uint64_t scans_at_begin_ = 0;    // whole revolutions before the start
+  std::uint64_t skipped_at_begin_ = 0;  // bytes outside of packets before it
 };
 
 }  // namespace g4lidar

@@ -57,9 +57,18 @@ result<bool> live_driver::go_on_with_setup() {
       if (stream_.motor_ready_ns() > now_ns()) return has_outcome;
       if (auto raised = stream_.set_motor(true); !raised) return tl::unexpected(raised.error());
       stream_.begin_points();
-      if (!setup_.is_again()) scans_at_begin_ = pipeline_.scans();
+      if (!setup_.is_again()) {
+        scans_at_begin_ = pipeline_.scans();
+        skipped_at_begin_ = pipeline_.counts().stream.skipped_bytes();
+      }
+    }
+    if (listens()) return has_outcome;
+    if (setup_.next() == setup_step::identify) {
+      // The motor starts at an edge, and the system raises the line when it opens a port.
+      if (auto lowered = stream_.set_motor(false); !lowered) return tl::unexpected(lowered.error());
     }
     const request next = request_of(setup_.next(), options_);
+    stream_.begin_request();
     const auto refused = talk.begin(next, now_ns());
     if (refused == refusal::bad_setting || refused == refusal::not_supported) {
       const error why =
@@ -100,7 +109,8 @@ result<void> live_driver::finish_step(const outcome& done) {
   if (done.how != verdict::answered) {
     // A device that does not answer a command that every two-way lidar knows is lost.
     if (!is_needed(finished, options_) && !done.heard_nothing()) return {};
-    return give_up(stream_.error_after(error_of(done, stage_, connection_, *options_.model)));
+    return give_up(
+        stream_.error_after(error_of(done, stage_, connection_, *options_.model, stream_.heard())));
   }
   if (const auto* reply = std::get_if<health>(&done.value)) {
     if (reply->status == health_status::error) {

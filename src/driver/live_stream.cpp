@@ -32,6 +32,7 @@ void live_stream::begin() {
   transport& on = of_.on.on();
   link_.follow(on);
   reported_.reset();
+  heard_ = {};
   of_.from.reset(on.baud(), on.kept_bytes(), now_ns());
   of_.pipeline.follow(on.baud());
   of_.motor.forget();
@@ -42,6 +43,7 @@ void live_stream::begin() {
 result<void> live_stream::send() {
   return link_.send([&](bytes command) {
     of_.pipeline.sent(command);
+    heard_.sent(command);
     return of_.on.send(command);
   });
 }
@@ -70,6 +72,7 @@ result<void> live_stream::receive(std::int64_t deadline_ns) {
     return of_.from.receive(on, how_to_read(), input.held(), input.missing(), deadline_ns);
   });
   if (!got) return tl::unexpected(got.error());
+  heard_.received(of_.from.buffer().first(got->count));
   if (got->count == 0 && link_.cut_off()) record(recorded_event::kind::cut);
   return {};
 }

@@ -15,6 +15,7 @@
 #include "point_pipeline.hpp"
 #include "receiver.hpp"
 #include "spin_up.hpp"
+#include "unrecognised_bytes.hpp"
 
 namespace g4lidar {
 
@@ -38,6 +39,9 @@ class live_stream {
 
   /// What the device has reported unasked.
   [[nodiscard]] identity_reader& reported() noexcept { return reported_; }
+  /// What was received and sent since the connection was opened, or since begin_request().
+  [[nodiscard]] const unrecognised_bytes& heard() const noexcept { return heard_; }
+  void begin_request() noexcept { heard_ = {}; }
 
   /// The connection was opened.
   void begin();
@@ -92,6 +96,7 @@ class live_stream {
   device_link link_;
   motor_kind motor_;
   identity_reader reported_;
+  unrecognised_bytes heard_;
   std::uint32_t sample_rate_hz_;
   std::int64_t motor_ready_ns_ = 0;
   bool is_line_high_ = false;  // DTR, as far as it is known

@@ -2,6 +2,8 @@
 // The error of a request that was not answered.
 #pragma once
 
+#include <algorithm>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <string_view>
@@ -12,6 +14,7 @@
 #include "g4lidar/core/model.hpp"
 #include "g4lidar/error.hpp"
 #include "live_stage.hpp"
+#include "unrecognised_bytes.hpp"
 
 namespace g4lidar {
 
@@ -24,20 +27,21 @@ namespace g4lidar {
   return asked.what == request_kind::health ? task::starting : task::configuring;
 }
 
-/// "/dev/ttyUSB0, S2 (115200 or 128000 baud)", and " at 9600 baud" if it is read at another rate.
+/// "/dev/ttyUSB0, S2 (115200 or 128000 baud) at 128000 baud": where the model has one rate, and it is read at that,
+/// without the last one.
 [[nodiscard]] inline error_context opened_as(const connection& on, const model& which) noexcept {
   error_context about = error_context(on.name()).add(", ").add(which.name);
   about.add(" (").add(which.bauds[0]);
   if (which.bauds[1] != 0) about.add(" or ").add(which.bauds[1]);
   about.add(" baud)");
   const std::uint32_t used = on.is_open() ? on.on().baud() : 0;
-  if (used == 0 || used == which.bauds[0] || used == which.bauds[1]) return about;
+  if (used == 0 || (used == which.bauds[0] && which.bauds[1] == 0)) return about;
   return about.add(" at ").add(used).add(" baud");
 }
 
-/// `which` is the model as which the device was opened.
+/// `which` is the model as which the device was opened; `heard` what it sent since.
 [[nodiscard]] inline error error_of(const outcome& done, live_stage stage, const connection& on,
-                                    const model& which) noexcept {
+                                    const model& which, const unrecognised_bytes& heard) noexcept {
   const task doing = task_of(done.asked, stage);
   const bool is_known = stage != live_stage::identifying;
   const auto why = is_known ? error_detail::answered_before : error_detail::usual;
@@ -51,8 +55,20 @@ namespace g4lidar {
   if (done.how == verdict::still_scanning) return {doing, problem::does_not_stop, about};
   const bool is_setting_up = !is_known || stage == live_stage::preparing;
   if (done.heard_nothing() && is_setting_up) return {doing, problem::silence, about, 0, why};
-  if (done.heard_noise_only()) return {doing, problem::garbage, about, 0, why};
+  if (done.heard_noise_only()) {
+    return {doing, problem::garbage, about.add(heard.text()), 0, why};
+  }
   return {doing, done.wrong_answers > 0 ? problem::wrong_answer : problem::timeout, about};
+}
+
+/// Of a scan whose bytes are no packets.
+[[nodiscard]] inline error without_packets(const connection& on, std::uint64_t count) noexcept {
+  constexpr std::uint64_t most = 4'000'000'000;
+  const error_context about = error_context(on.name())
+                                  .add(", ")
+                                  .add(static_cast<std::uint32_t>(std::min(count, most)))
+                                  .add(" bytes without a valid packet");
+  return {task::reading, problem::garbage, about, 0, error_detail::answered_before};
 }
 
 /// Of a request that a session refuses.

@@ -7,6 +7,7 @@
 #include <limits>
 #include <string>
 #include <variant>
+#include <vector>
 
 #include "core/number_text.hpp"
 #include "g4lidar/core/session/model_requests.hpp"
@@ -111,26 +112,35 @@ std::optional<answer> value_of(const setting_info& of, std::int32_t number) noex
   return scan_frequency{static_cast<std::uint16_t>(number)};
 }
 
-result<answer> value_in(const setting_info& of, std::string_view text) {
-  const std::string given = in_quotes(text.substr(0, 60));  // an error is at most 159 bytes
-  const auto refused = [&of](std::string why) {
+result<answer> value_in(const setting_info& of, std::string_view text, const model* which) {
+  const std::string given = in_quotes(text);
+  // What the model does not have at all is refused by the lidar, which says so.
+  const bool is_known = which != nullptr && has_request(*which, of.change);
+  const auto refused = [&](std::string why, bool is_of_model = true) {
     if (!of.unit.empty()) why.append(" ").append(of.unit);
+    if (is_known && is_of_model) {
+      why.append(" of ").append(article_of(*which)).append(" ").append(which->name);
+    }
     return failure(task::configuring, problem::bad_option, std::string(of.name) + ": " + why);
   };
   if (of.type == setting_type::decimal) {
-    const auto number = number_in(text, of.least / 100.0, of.most / 100.0);
-    if (!number)
-      return refused(not_in_range(text.substr(0, 60), of.least / 100.0, of.most / 100.0));
+    const double least = is_known ? which->frequency.min_dhz / 10.0 : of.least / 100.0;
+    const double most = is_known ? which->frequency.max_dhz / 10.0 : of.most / 100.0;
+    const auto number = number_in(text, least, most);
+    if (!number) return refused(not_in_range(text, least, most));
     const double steps = *number * 100.0 / of.step;
     const auto made = value_of(of, static_cast<std::int32_t>(std::lround(steps)) * of.step);
     if (made && std::abs(steps - std::round(steps)) <= 1e-6) return *made;
-    return refused(given + " is not a multiple of " + text_of_number(of.step / 100.0));
+    return refused(given + " is not a multiple of " + text_of_number(of.step / 100.0), false);
   }
+  std::vector<std::string_view> possible;
   for (const setting_value& each : of.values) {
+    if (is_known && !is_possible(change_to(each.value), *which)) continue;
     const bool is_number = of.type == setting_type::whole && text == std::to_string(each.number);
     if (is_number || text == each.word) return each.value;
+    possible.push_back(each.word);
   }
-  return refused(given + " is not one of " + list_of(of.values, &setting_value::word));
+  return refused(given + " is not one of " + list_of(possible));
 }
 
 // NOLINTNEXTLINE(bugprone-exception-escape): a variant of numbers always has a value

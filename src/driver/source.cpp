@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "core/number_text.hpp"
 #include "discovery/system_connector.hpp"
 #include "g4lidar/recording/raw_bytes.hpp"
 #include "g4lidar/recording/replay.hpp"
@@ -57,10 +58,6 @@ option_user user_of(std::string_view name) {
   return user_of(kind_of_source(name), path_of_source(name));
 }
 
-std::uint32_t baud_of(const lidar_options& options, const model& which) noexcept {
-  return options.baud != 0 ? options.baud : which.bauds[0];
-}
-
 #if defined(G4LIDAR_HAS_SIM)
 /// To the port of a simulated lidar, which it owns.
 class simulated_connector final : public forwarding_connector {
@@ -87,8 +84,8 @@ class simulated_connector final : public forwarding_connector {
 result<std::unique_ptr<connector>> connect_simulated(const lidar_options& options) {
   auto made = sim::open_simulated(options.device);
   if (!made) return tl::unexpected(made.error());
-  auto inner = system_connector::make(made->port->path(),
-                                      baud_of(options, simulated_connector::model_of(*made)));
+  auto inner = system_connector::find(made->port->path(), options.baud, options.is_cancelled,
+                                      &simulated_connector::model_of(*made));
   if (!inner) return inner;
   return std::make_unique<simulated_connector>(*std::move(inner), *std::move(made));
 }
@@ -144,7 +141,7 @@ result<const model*> model_in_source(std::string_view name) {
   const model* const found = model_named(word);
   if (found != nullptr) return found;
   return failure(task::opening, problem::bad_option,
-                 "model: '" + std::string(word) + "' is not one of " + model_words());
+                 "model: " + in_quotes(word) + " is not one of " + model_words());
 }
 
 result<const model*> model_of_source(std::string_view name,
@@ -201,8 +198,7 @@ result<std::unique_ptr<connector>> connector_for(const lidar_options& options) {
     case source_kind::device:
       break;
   }
-  if (is_searched) return system_connector::find(path, options.baud, options.is_cancelled);
-  return system_connector::make(path, baud_of(options, *wanted), wanted);
+  return system_connector::find(path, options.baud, options.is_cancelled, wanted);
 }
 
 std::optional<error> problem_with_source(const lidar_options& options) {

@@ -30,7 +30,7 @@ std::optional<std::string> read_corners(std::string_view rest, std::vector<corne
   std::size_t count = 0;
   for (std::string_view word = next_word(rest); !word.empty(); word = next_word(rest)) {
     const std::optional<double> value = number_in(word, std::chars_format::fixed);
-    if (!value) return quoted(word) + " is not a number; write decimals like -0.25";
+    if (!value) return in_quotes(word) + " is not a number; write decimals like -0.25";
     if (!(*value >= -max_mask_coordinate_m && *value <= max_mask_coordinate_m)) {
       return "no coordinate may be beyond 100 m; coordinates are in metres";
     }
@@ -50,7 +50,8 @@ std::optional<std::string> read_corners(std::string_view rest, std::vector<corne
 std::optional<std::string> read_line(std::string_view line, mask& made) {
   const std::string_view word = next_word(line);
   if (word.empty()) return std::nullopt;
-  if (word != "polygon") return quoted(word) + " is unknown; a line begins with 'polygon' or '#'";
+  if (word != "polygon")
+    return in_quotes(word) + " is unknown; a line begins with 'polygon' or '#'";
   if (made.polygons().size() == max_mask_polygons) return "there are more than 1000 polygons";
   std::vector<corner> corners;
   if (auto wrong = read_corners(line, corners)) return wrong;

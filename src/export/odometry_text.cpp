@@ -25,21 +25,21 @@ std::optional<std::string> read_pose(std::string_view line, std::vector<stamped_
   const char* const end = time.data() + time.size();
   const auto [at, wrong] = std::from_chars(time.data(), end, time_ns);
   if (wrong != std::errc() || at != end || time_ns >= max_time_ns || time_ns <= -max_time_ns) {
-    return quoted(time) + " is not a time in whole nanoseconds; a line is 'time_ns x y yaw_rad'";
+    return in_quotes(time) + " is not a time in whole nanoseconds; a line is 'time_ns x y yaw_rad'";
   }
   for (double& value : values) {
     const std::string_view word = next_word(line);
     const std::optional<double> read = number_in(word);
     if (word.empty()) return "there are less than the 4 numbers 'time_ns x y yaw_rad'";
-    if (!read) return quoted(word) + " is not a number";
+    if (!read) return in_quotes(word) + " is not a number";
     if (*read < -max_odometry_value || *read > max_odometry_value) {
-      return quoted(word) + " is above 1000000; x and y are in metres, yaw in radians";
+      return in_quotes(word) + " is above 1000000; x and y are in metres, yaw in radians";
     }
     value = *read;
   }
   if (!next_word(line).empty()) return "there are more than the 4 numbers 'time_ns x y yaw_rad'";
   if (!poses.empty() && time_ns <= poses.back().time_ns) {
-    return quoted(time) + " is not later than the time of the pose before";
+    return in_quotes(time) + " is not later than the time of the pose before";
   }
   poses.push_back({time_ns, {values[0], values[1], values[2]}});
   return std::nullopt;

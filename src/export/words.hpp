@@ -11,7 +11,7 @@
 #include <string_view>
 #include <system_error>
 
-#include "g4lidar/export/printable.hpp"
+#include "core/number_text.hpp"
 
 namespace g4lidar {
 
@@ -30,13 +30,6 @@ namespace g4lidar {
   const std::string_view word = line.substr(0, line.find_first_of(spaces));
   line.remove_prefix(word.size());
   return word;
-}
-
-/// A word for an error message.
-[[nodiscard]] inline std::string quoted(std::string_view word) {
-  constexpr std::size_t enough = 24;
-  std::string text = "'";  // appended to: g++ 12 warns of other forms without a reason
-  return text.append(printable(word.substr(0, enough))).append(word.size() > enough ? "...'" : "'");
 }
 
 /// A finite number that is the whole word; it may have a plus sign.

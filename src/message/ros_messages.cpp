@@ -167,14 +167,24 @@ std::uint32_t cloud_point_size(const model& of) noexcept {
   return cloud_fields(of).back().offset + 4;
 }
 
+std::int64_t cloud_time_ns(std::span<const point> points) noexcept {
+  std::int64_t earliest_ns = 0;
+  for (const point& p : points) {
+    const bool is_earlier = earliest_ns == 0 || p.time_ns < earliest_ns;
+    if (p.time_ns != 0 && is_earlier) earliest_ns = p.time_ns;
+  }
+  return earliest_ns;
+}
+
 void put_cloud_points(std::span<const point> points, const message_header& header,
                       std::vector<std::uint8_t>& out) {
   const bool with_intensity = has_intensity(*header.model);
   const float left = header.order == scan_order::time ? -1.0F : 1.0F;  // the y axis
+  const std::int64_t begin_ns = cloud_time_ns(points);
   for (const point& p : points) {
     if (p.is_no_return()) continue;
     const xy_point place = to_xy(p, frame::robot, header.model->turn_deg);
-    const std::int64_t since_ns = detail::saturating_sub(p.time_ns, points.front().time_ns);
+    const std::int64_t since_ns = detail::saturating_sub(p.time_ns, begin_ns);
     append(out, place.x_m);
     append(out, left * place.y_m);
     append(out, 0.0F);

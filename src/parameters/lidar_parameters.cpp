@@ -125,8 +125,9 @@ parameter_value value_of(const answer& given) {
   return word == nullptr ? parameter_value() : std::string(word->word);
 }
 
-result<answer> answer_of(const setting_info& of, const parameter_value& wanted) {
-  return value_in(of, word_of(wanted));
+result<answer> answer_of(const setting_info& of, const parameter_value& wanted,
+                         const model* which) {
+  return value_in(of, word_of(wanted), which);
 }
 
 std::span<const parameter> all_parameters() {
@@ -199,10 +200,14 @@ parameter_value lidar_parameters::value(const parameter& of) const {
   return at == values_.end() ? parameter_value() : at->second;
 }
 
-parameter lidar_parameters::row(const parameter& of) const {
+const model* lidar_parameters::known_model() const {
   const parameter_value known = value(*find_parameter("model"));
   const auto* const word = std::get_if<std::string>(&known);
-  const model* const which = word != nullptr ? model_named(*word) : nullptr;
+  return word != nullptr ? model_named(*word) : nullptr;
+}
+
+parameter lidar_parameters::row(const parameter& of) const {
+  const model* const which = known_model();
   return which != nullptr ? limited_to(*which, of) : of;
 }
 
@@ -252,7 +257,7 @@ std::string lidar_parameters::change(lidar* device, std::span<const named_value>
       values[known->name] = *value;
       continue;
     }
-    const auto change = answer_of(*known->setting, *value);
+    const auto change = answer_of(*known->setting, *value, known_model());
     if (!change) return std::string(change.error().subject());
     changes.emplace_back(known, *change);
   }

@@ -131,26 +131,40 @@ void found_channels::take(field_reader record) {
   if (!record.is_good() || encoding != "cdr") return;
   constexpr std::string_view version_prefix = "/g4lidar/v";
   static_assert(version_prefix.starts_with(connection_prefix));
-  if (name.starts_with(version_prefix) && !take_model(record, name)) return;
+  const g4lidar::model* const stated =
+      name.starts_with(version_prefix) ? model_in(record, name) : &g4_model;
+  if (stated == nullptr) return;
   for (const topic_words& known : topics) {
-    if (known.is_read() && known.name == name) ids_[index_of(known.id)] = id;
+    if (!known.is_read() || known.name != name) continue;
+    if (known.is_of_connection() && !agrees(*stated)) return;
+    ids_[index_of(known.id)] = id;
   }
 }
 
-/// Whether the version in the name of a channel, which is removed, and the model in its metadata are
-/// known.
-bool found_channels::take_model(field_reader metadata, std::string& name) {
+/// Whether the model is that of the channels before, or there was none.
+bool found_channels::agrees(const g4lidar::model& stated) {
+  if (model_ == nullptr) model_ = &stated;
+  if (model_->word == stated.word) return true;
+  contradiction_ = std::string(model_->word).append(" and ").append(stated.word);
+  return false;
+}
+
+/// The model in the metadata of a channel, whose name loses its version; null if the version or the model is not known.
+const g4lidar::model* found_channels::model_in(field_reader metadata, std::string& name) {
   const std::string_view rest = std::string_view(name).substr(connection_prefix.size());
   const std::string word = word_in(metadata, model_key);
   const g4lidar::model* const stated =
       rest.starts_with(model_version) ? model_named(word) : nullptr;
-  if (model_ == nullptr) model_ = stated;
-  if (stated == nullptr || stated != model_) {
+  if (stated == nullptr) {
     refused_ = name + (word.empty() ? "" : " of the model " + word);
-    return false;
+  } else {
+    name.erase(connection_prefix.size(), model_version.size());
   }
-  name.erase(connection_prefix.size(), model_version.size());
-  return true;
+  return stated;
+}
+
+bool found_channels::reads(std::uint16_t id) const noexcept {
+  return std::ranges::any_of(ids_, [id](const auto& each) { return each == id; });
 }
 
 bool found_channels::has_connection() const noexcept {

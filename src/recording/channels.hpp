@@ -93,6 +93,8 @@ class found_channels {
   [[nodiscard]] bool is(topic which, std::uint16_t id) const noexcept {
     return ids_[index_of(which)] == id;
   }
+  /// Whether readers return the messages of this channel.
+  [[nodiscard]] bool reads(std::uint16_t id) const noexcept;
   /// Whether there are any of the connection to a lidar.
   [[nodiscard]] bool has_connection() const noexcept;
   [[nodiscard]] const g4lidar::model& model() const noexcept {
@@ -100,13 +102,17 @@ class found_channels {
   }
   /// The last one of a version or a model that is not known; empty: there was none.
   [[nodiscard]] const std::string& refused() const noexcept { return refused_; }
+  /// "t-mini-pro and tg15": channels of the connection state both models; empty: all state the same.
+  [[nodiscard]] const std::string& contradiction() const noexcept { return contradiction_; }
 
  private:
-  [[nodiscard]] bool take_model(field_reader metadata, std::string& name);
+  [[nodiscard]] const g4lidar::model* model_in(field_reader metadata, std::string& name);
+  [[nodiscard]] bool agrees(const g4lidar::model& stated);
 
   std::array<std::optional<std::uint16_t>, topic_count> ids_;
   const g4lidar::model* model_ = nullptr;  // null: none was stated yet
   std::string refused_;
+  std::string contradiction_;
 };
 
 /// Of the messages of a chunk.

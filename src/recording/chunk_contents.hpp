@@ -5,9 +5,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "byte_source.hpp"
+#include "channels.hpp"
 #include "g4lidar/core/bytes.hpp"
 #include "packer.hpp"
 
@@ -33,9 +35,14 @@ struct chunk_header {
 
 /// Unpacks chunks in pieces, and stops where a chunk cannot be intact, or costs too much: what is
 /// not a message may be up to 64 times as large as it is stored, and 16 MiB larger in all chunks
-/// together. Real chunks have some hundred bytes of it.
+/// together. Real chunks have some hundred bytes of it. Of messages that are not read it may be 16 times as
+/// much, and of those that are read 64 times.
 class chunk_contents {
  public:
+  explicit chunk_contents(found_channels known) : channels_(std::move(known)) {}
+
+  /// The content of the record of a channel outside of chunks.
+  void take_channel(bytes record) { channels_.take(field_reader(record)); }
   /// The uncompressed records: nothing if they are damaged, the checksum does not match, they cost
   /// too much, or `file` was cancelled. `stored` must be valid as long as the result.
   [[nodiscard]] std::optional<bytes> records_of(bytes stored, const chunk_header& chunk,
@@ -46,6 +53,7 @@ class chunk_contents {
  private:
   std::vector<std::uint8_t> unpacked_;
   unpacker unpacker_;
+  found_channels channels_;
   std::uint64_t spare_ = std::uint64_t{16} << 20U;  // what may still be unpacked without use
   std::uint64_t bytes_unpacked_ = 0;
 };

@@ -17,8 +17,12 @@ constexpr std::uint64_t patience = 8;
 
 }  // namespace
 
-chunk_source::chunk_source(std::shared_ptr<byte_source> file)
-    : file_(std::move(file)), size_(file_->size()), limit_(size_), window_(window_room) {}
+chunk_source::chunk_source(std::shared_ptr<byte_source> file, found_channels known)
+    : file_(std::move(file)),
+      size_(file_->size()),
+      limit_(size_),
+      window_(window_room),
+      contents_(std::move(known)) {}
 
 // ---- bytes --------------------------------------------------------------------------------------
 
@@ -128,6 +132,7 @@ record_block chunk_source::step() {
   if (!is_read || size > largest_record) return {};
   const auto record = content(at, static_cast<std::size_t>(size));
   if (record.size() < size) return {};  // the file has become shorter
+  if (header->kind == opcode::channel) contents_.take_channel(record.subspan(record_header_size));
   return {record, at};
 }
 

@@ -24,11 +24,11 @@ struct record_block {
 };
 
 /// Reads a file in sequence. Its memory: one compressed and one uncompressed chunk. Damaged parts
-/// are skipped to the next intact chunk, and counted. The work for what contains no messages is
-/// bounded by the size of the file.
+/// are skipped to the next intact chunk, and counted. The work is bounded by the size of the file, see chunk_contents.
 class chunk_source {
  public:
-  explicit chunk_source(std::shared_ptr<byte_source> file);
+  /// `known`: the channels that were found before.
+  explicit chunk_source(std::shared_ptr<byte_source> file, found_channels known = {});
 
   /// The next records; empty at the end, if the file cannot be read, and if it was cancelled. Valid
   /// until the next call.

@@ -96,7 +96,7 @@ result<void> recording_reader::file_reader::check() {
 /// By the summary.
 void recording_reader::file_reader::read_summary() {
   mcap::read_summary(*chunks_, [this](opcode kind, field_reader record) {
-    if (kind == opcode::channel) channels_.take(record);
+    if (kind == opcode::channel) take_channel(record);
     if (kind == opcode::metadata) take_metadata(record);
   });
 }
@@ -112,8 +112,16 @@ void recording_reader::file_reader::read_front() {
     const auto kind = static_cast<opcode>(records.take<std::uint8_t>());
     field_reader record(records.take(records.take<std::uint64_t>()));
     if (kind == opcode::metadata) take_metadata(record);
-    if (kind == opcode::channel) channels_.take(record);
+    if (kind == opcode::channel) take_channel(record);
   }
+}
+
+/// The bytes of another model would be read as those of the first one.
+void recording_reader::file_reader::take_channel(field_reader record) {
+  channels_.take(record);
+  if (channels_.contradiction().empty() || file_->trouble()) return;
+  file_->fail(error(task::reading, problem::bad_file, path_ + ", " + channels_.contradiction(), 0,
+                    error_detail::several_models));
 }
 
 void recording_reader::file_reader::take_metadata(field_reader record) {
@@ -129,7 +137,7 @@ void recording_reader::file_reader::seek(std::int64_t from_ns) {
   is_state_reported_ = false;
   transport_ = {};
   const std::optional<std::uint64_t> offset = chunk_before(from_ns);
-  chunks_ = std::make_unique<chunk_source>(file_);
+  chunks_ = std::make_unique<chunk_source>(file_, channels_);
   records_ = {};
   sequence_.reset();
   is_gap_ = false;
@@ -143,7 +151,7 @@ std::optional<std::uint64_t> recording_reader::file_reader::chunk_before(std::in
   std::uint64_t high = size();
   while (high - low > near_enough) {
     const std::uint64_t middle = low + (high - low) / 2;
-    chunk_source probe(file_);
+    chunk_source probe(file_, channels_);
     probe.seek(middle);
     std::optional<std::int64_t> time_ns;
     std::uint64_t at = middle;
@@ -169,7 +177,7 @@ void recording_reader::file_reader::find_end() {
   const auto kept = std::tuple(sequence_, is_gap_, wall_ahead_ns_);
   last_ns_ = first_ns_;
   for (const std::uint64_t offset : mcap::last_chunks(*file_)) {
-    chunk_source tail(file_);
+    chunk_source tail(file_, channels_);
     tail.seek(offset);
     auto block = tail.next();
     if (block.offset != offset) continue;  // it is damaged
@@ -189,7 +197,7 @@ std::optional<std::int64_t> recording_reader::file_reader::first_time_in(bytes& 
     const auto kind = static_cast<opcode>(rest.take<std::uint8_t>());
     const field_reader record(rest.take(rest.take<std::uint64_t>()));
     records = rest.rest();
-    if (kind == opcode::channel) channels_.take(record);
+    if (kind == opcode::channel) take_channel(record);
     if (kind != opcode::message) continue;
     const auto item = item_in(record);
     if (item && item->what != recorded_item::kind::odometry) return item->time_ns;
@@ -265,7 +273,7 @@ std::optional<recorded_item> recording_reader::file_reader::read() {
         break;
       }
       records_ = rest.rest();
-      if (kind == opcode::channel) channels_.take(record);
+      if (kind == opcode::channel) take_channel(record);
       if (kind == opcode::metadata) take_metadata(record);
       if (kind != opcode::message) continue;
       auto item = item_in(record);

@@ -88,6 +88,13 @@ error looked_into(const error& why, const transport& port) {
 
 }  // namespace
 
+bool is_pty_master(const struct stat& file) noexcept {
+  const auto number = major(file.st_rdev);
+  const bool is_multiplexer = number == 5 && minor(file.st_rdev) == 2;
+  const bool is_master = number == 2 || (number >= 128 && number <= 135);
+  return S_ISCHR(file.st_mode) && (is_multiplexer || is_master);
+}
+
 std::string lock_holder(const struct stat& file) {
   std::ifstream locks("/proc/locks");
   for (std::string line; std::getline(locks, line);) {

@@ -12,6 +12,10 @@
 
 namespace g4lidar {
 
+/// Whether this is the end of pseudo-terminals at which simulators are, or the device that makes them: /dev/ptmx.
+/// Each process that opens it gets one of its own. *Pure.*
+[[nodiscard]] bool is_pty_master(const struct stat& file) noexcept;
+
 /// The process that holds the lock on this file, "screen (1234)"; empty if the system does not show
 /// it.
 [[nodiscard]] std::string lock_holder(const struct stat& file);

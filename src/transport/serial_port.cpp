@@ -101,6 +101,7 @@ result<owned_fd> open_path(const std::string& path, const system_calls& calls) {
     }
     return not_opened(path, system_errno, file);
   }
+  if (is_pty_master(file)) return failure(task::opening, problem::not_serial, path);
   if (!S_ISCHR(file.st_mode)) {
     constexpr std::size_t longest = 30;  // the subject of an error holds 95 characters
     const bool fits = S_ISREG(file.st_mode) && path.size() <= longest;

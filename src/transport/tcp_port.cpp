@@ -26,10 +26,8 @@ struct host_and_port {
   std::string port;
 };
 
-/// 1 to 65535, or the name of a service, which begins with a letter.
+/// 1 to 65535: names of services are not looked up.
 bool is_port(std::string_view text) {
-  const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
-  if (!text.empty() && is_letter(text.front())) return true;
   std::uint16_t number = 0;
   const auto [end, wrong] = std::from_chars(text.data(), text.data() + text.size(), number);
   return wrong == std::errc() && end == text.data() + text.size() && number > 0;
@@ -59,6 +57,7 @@ address_list addresses_of(const host_and_port& wanted) {
   addrinfo hints{};
   hints.ai_family = AF_UNSPEC;
   hints.ai_socktype = SOCK_STREAM;
+  hints.ai_flags = AI_NUMERICSERV;
   addrinfo* list = nullptr;
   const int failed = ::getaddrinfo(wanted.host.c_str(), wanted.port.c_str(), &hints, &list);
   return address_list(failed == 0 ? list : nullptr);

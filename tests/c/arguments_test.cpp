@@ -217,7 +217,10 @@ TEST(CArguments, ImpossibleOptionsAreNamed) {
     return subject.rfind(name, 0) == 0;
   };
   EXPECT_TRUE(names(refused([](auto& o) { o.frequency_chz = 70000; }), "frequency_chz"));
-  EXPECT_TRUE(names(refused([](auto& o) { o.frequency_chz = 100; }), "frequency"));
+  for (const int chz : {100, 4000}) {
+    EXPECT_EQ(refused([chz](auto& o) { o.frequency_chz = chz; }),
+              "frequency: 500 to 1200 (5 to 12 Hz of a G4), not " + std::to_string(chz));
+  }
   EXPECT_TRUE(names(refused([](auto& o) { o.sample_rate_hz = 5000; }),
                     "sample_rate_hz: 4000, 6000, 8000, 9000, 10000, 16000, 18000, 20000 or 0"));
   EXPECT_TRUE(names(refused([](auto& o) { o.direction = 3; }), "direction"));

@@ -164,6 +164,11 @@ TEST(CLidar, RefusesImpossibleSettings) {
     EXPECT_EQ(reached, 7);
     return code;
   };
+  g4lidar_error why;
+  std::int32_t unused = 0;
+  g4lidar_set(it.get(), G4LIDAR_SCAN_FREQUENCY, 4000, G4LIDAR_REFUSE, &unused, &why);
+  EXPECT_NE(std::string(why.message).find("40 Hz (5 Hz to 12 Hz of a G4)"), std::string::npos)
+      << why.message;
   EXPECT_EQ(refused(G4LIDAR_SCAN_FREQUENCY, 499), G4LIDAR_BAD_SETTING);
   EXPECT_EQ(refused(G4LIDAR_SCAN_FREQUENCY, -1), G4LIDAR_BAD_SETTING);
   EXPECT_EQ(refused(G4LIDAR_SCAN_FREQUENCY, 65536 + 700), G4LIDAR_BAD_SETTING);

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -86,6 +87,29 @@ TEST_F(Escaping, NamesAndBytesOfAFile) {
   std::filesystem::rename(recording, path("plain.mcap"));
   expect_plain_recording(path("plain.mcap"));
   EXPECT_THAT(run({"packets", path("plain.mcap")}).out, HasSubstr(R"(\x1B[2J)"));
+}
+
+TEST_F(Escaping, WordsOfTheCommandLine_AreOneShortLine) {
+  const std::string long_word(300'000, 'x');
+  for (const words& arguments : {words{"scan", "sim:", "--model"},
+                                 {"scan", "sim:", "--baud"},
+                                 {"scan", "sim:", "-f"},
+                                 {"scan"},
+                                 {"dump", "sim:", "--fov"},
+                                 {"sim", "--device"},
+                                 {"sim", "--fault"},
+                                 {}}) {
+    for (const std::string& word : {"a\nb=" + long_word, "a\nb", "sim:?model=a\nb" + long_word,
+                                    "tcp:a\nb" + long_word + ":1"}) {
+      words all = arguments;
+      all.push_back(word);
+      const outcome done = run(all);
+      EXPECT_EQ(cli::unescaped_in(done.err), "") << done.err;
+      EXPECT_LT(done.err.size(), 3000U) << done.err.substr(0, 500);
+      EXPECT_EQ(std::ranges::count(done.err, '\n'), 1) << done.err.substr(0, 500);
+      EXPECT_NE(done.code, 0);
+    }
+  }
 }
 
 TEST_F(Escaping, TextsOfPoints) {

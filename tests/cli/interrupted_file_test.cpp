@@ -16,9 +16,9 @@
 namespace {
 
 using namespace std::chrono_literals;
-using g4lidar::test::chunk_of_a_foreign_message;
 using g4lidar::test::hostile_chunk;
 using g4lidar::test::hostile_mcap;
+using g4lidar::test::slow_mcap;
 
 class InterruptedFile : public cli::scratch, public ::testing::WithParamInterface<const char*> {
  protected:
@@ -31,8 +31,8 @@ class InterruptedFile : public cli::scratch, public ::testing::WithParamInterfac
 };
 
 TEST_P(InterruptedFile, ObeysASignal) {
-  cli::write_file(path("slow.mcap"), hostile_mcap(chunk_of_a_foreign_message(), 10'000));
-  cli::program reading(command(path("slow.mcap")));  // it needs many minutes
+  cli::write_file(path("slow.mcap"), slow_mcap());
+  cli::program reading(command(path("slow.mcap")));  // it needs a minute
   std::this_thread::sleep_for(1s);
   reading.send(SIGTERM);
   const auto begin = std::chrono::steady_clock::now();

@@ -27,7 +27,7 @@ g4;5;230400;r/4;T;two;cmd;4:10 8:26 9:28;9;D0;50-120;0/0;-;80;yes;??;180;100-160
 g4-pro;7;230400;r/4;T;two;cmd;4:10 8:26 9:28;9;D0;50-120;0/0;-;80;yes;??;180;100-16000;0
 g5;20;230400;r/4;T;two;cmd;4:10 8:26 9:28;9;D0;50-120;0/0;-;80;??;??;180;100-16000;0
 f4;1;115200;r/4;T;two;cmd;4;4;-;50-120;0/0;-;40;no;??;180;120-12000;0
-f4-pro;8;230400;r/4;T;two;cmd;4 6;4;D0;50-120;0/0;-;40;yes;??;180;120-12000;0
+f4-pro;8 4;230400;r/4;T;two;cmd;4 6;4;D0;50-120;0/0;-;40;yes;??;180;120-12000;0
 g1;19;230400;r/4;T;two;cmd;9:28;9;-;50-120;0/0;4;40;??;??;180;100-16000;0
 g2a;14;230400;r/4;T;two;cmd;5;5;-;50-120;0/0;4;40;??;??;180;100-12000;0
 g2c;16;115200;r/4;T;two;cmd;4;4;-;50-120;0/0;4;40;??;??;180;100-12000;0
@@ -187,9 +187,10 @@ TEST(Model, AnIdNamesAModelOnlyIfNoOtherOfItsKindUsesIt) {
   using enum link_kind;
   EXPECT_EQ(word(5, two_way), "g4");
   EXPECT_EQ(word(151, two_way), "t-mini-plus");
-  EXPECT_EQ(word(6, two_way), "x4");     // X4 Pro, X2, X3 use it, too, but they answer nothing
-  EXPECT_EQ(word(6, one_way), "none");   // X4 Pro, X2, X3
-  EXPECT_EQ(word(4, two_way), "none");   // S4, S4B
+  EXPECT_EQ(word(6, two_way), "x4");    // X4 Pro, X2, X3 use it, too, but they answer nothing
+  EXPECT_EQ(word(6, one_way), "none");  // X4 Pro, X2, X3
+  EXPECT_EQ(word(4, two_way), "none");  // F4 Pro, S4, S4B
+  EXPECT_EQ(word(8, two_way), "f4-pro");
   EXPECT_EQ(word(11, two_way), "s4b");   // its second id
   EXPECT_EQ(word(12, one_way), "none");  // S2, S2 Pro
   EXPECT_EQ(word(22, one_way), "scl");

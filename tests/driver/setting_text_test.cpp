@@ -46,6 +46,29 @@ TEST(SettingText, AnErrorStatesWhatIsPossible) {
   EXPECT_THAT(why("sample_rate", std::string(500, '9')), ::testing::EndsWith("18k, 20k Hz"));
 }
 
+TEST(SettingText, AnErrorOfAKnownModelHasItsLimits) {
+  const auto why = [](std::string_view name, std::string_view text, const char* word) {
+    const auto given = value_in(row(name), text, model_named(word));
+    return given ? std::string("none") : std::string(given.error().subject());
+  };
+  EXPECT_EQ(why("frequency", "40", "g4"), "frequency: '40' is not in the range 5 to 12 Hz of a G4");
+  EXPECT_EQ(why("frequency", "3", "g4"), "frequency: '3' is not in the range 5 to 12 Hz of a G4");
+  EXPECT_EQ(why("frequency", "3", "tg15"), "none");
+  EXPECT_EQ(why("sample_rate", "16k", "g4"),
+            "sample_rate: '16k' is not one of 4k, 8k, 9k Hz of a G4");
+  EXPECT_EQ(why("sample_rate", "16k", "g6"), "none");
+  EXPECT_EQ(why("direction", "up", "g4"), "direction: 'up' is not one of cw, ccw of a G4");
+  EXPECT_EQ(why("frequency", "40", "x2"), "frequency: '40' is not in the range 3 to 16 Hz")
+      << "it has no such setting";
+}
+
+TEST(SettingText, WordsAreShownAsOneShortLine) {
+  const auto given = value_in(row("idle"), "a\nb\x1b[2J" + std::string(300'000, 'x'));
+  ASSERT_FALSE(given);
+  EXPECT_EQ(given.error().subject(),
+            R"(idle: 'a\x0Ab\x1B[2Jxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxx...' is not one of off, on)");
+}
+
 TEST(SettingText, AValueOfAParameterIsReadAsItsText) {
   EXPECT_EQ(answer_of(row("frequency"), std::int64_t{6}), answer(scan_frequency{600}));
   EXPECT_EQ(answer_of(row("frequency"), 9.3), answer(scan_frequency{930}));

@@ -129,9 +129,35 @@ TEST(Text, OfAValueThatTheModelDoesNotHave_NamesTheModelAndItsValues) {
   EXPECT_TRUE(has(message_of("FrequencyOutOfRange"), "15 Hz (5 Hz to 12 Hz of a G4): "));
 }
 
+TEST(Text, OfAnySubject_IsOneLineWithoutControls) {
+  const error of(task::opening, problem::no_port, "/dev/a\nb\x1b[2J\x9b\xc2\x9b\x7f\xc3\xa4");
+  EXPECT_EQ(of.subject(), "/dev/a\\x0Ab\\x1B[2J\\x9B\\xC2\\x9B\\x7F\xc3\xa4");
+  // Nothing of an escape or a character is cut off.
+  for (std::size_t size = 150; size < 170; ++size) {
+    for (const std::string last : {"\n", "\xc3\xa4", "x"}) {
+      const error cut(task::opening, problem::no_port, std::string(size, 'x') + last + "\n");
+      const std::string text(cut.subject());
+      EXPECT_LE(text.size(), 159U);
+      const std::string rest = text.substr(std::min(size, text.size()));
+      EXPECT_TRUE(rest.empty() || rest.starts_with("\\x0A") || rest.starts_with("\xc3\xa4") ||
+                  rest.starts_with('x'))
+          << size << rest;
+    }
+  }
+}
+
+TEST(Text, OfAWordForAModel_IsShort) {
+  const auto given = lidar::open("/dev/ttyUSB0?model=a\nb" + std::string(300'000, 'x'));
+  ASSERT_FALSE(given);
+  EXPECT_EQ(given.error(), problem::bad_option);
+  EXPECT_TRUE(has(given.error().subject(), R"(model: 'a\x0Abxxxxx)")) << given.error().subject();
+  EXPECT_TRUE(has(given.error().subject(), "...' is not one of g4, g4-pro"))
+      << given.error().subject();
+}
+
 /// A message of the C interface has 255 characters for the cause and for the advice.
 TEST(Text, OfEachDetail_FitsIntoTheCInterface) {
-  for (auto detail = error_detail::usual; detail <= error_detail::searched;
+  for (auto detail = error_detail::usual; detail <= error_detail::several_models;
        detail = static_cast<error_detail>(static_cast<int>(detail) + 1)) {
     const error longest(task::configuring, problem::no_port, std::string(127, 'x'), 0, detail);
     EXPECT_LT(longest.advice().size(), 256U);

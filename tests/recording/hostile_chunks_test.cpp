@@ -11,6 +11,7 @@
 #include "made_recording.hpp"
 #include "recorded_run.hpp"
 #include "recording/chunk_source.hpp"
+#include "recording/summary.hpp"
 #include "support/hostile_mcap.hpp"
 
 namespace g4lidar::test {
@@ -49,6 +50,38 @@ TEST_F(HostileChunks, WithoutMessages_CostWorkByTheSizeOfTheFile) {
   }
 }
 
+// 300 of them unpack to 19 GiB.
+TEST_F(HostileChunks, WithMessagesOfNoChannel_CostWorkByTheSizeOfTheFile) {
+  const std::string file = hostile_mcap(chunk_of_a_foreign_message(), 300);
+  EXPECT_LT(unpacked_from(file), 512 * (std::uint64_t{1} << 20U) + 1100 * file.size());
+}
+
+TEST_F(HostileChunks, WithMessagesOfARecordedChannel_CostWorkByTheSizeOfTheFile) {
+  const std::string channel = mcap_channel(1, "/g4lidar/from_device");
+  const std::string chunk = chunk_of_a_message(1);
+  const std::string file = mcap_begin() + channel + repeated(chunk, 300);
+  EXPECT_LT(unpacked_from(file), 1536 * (std::uint64_t{1} << 20U) + 4200 * file.size());
+  // Where the chunk itself describes the channel, it is known, too.
+  const std::string own = channel + mcap_record(5, {}, hostile_chunk_size - 9 - channel.size());
+  const std::string in_chunk = mcap_begin() + hostile_chunk(own + little_endian(1, 2));
+  mcap::chunk_source chunks(std::make_shared<memory_source>(bytes_of_text(in_chunk)));
+  EXPECT_FALSE(chunks.next().records.empty());
+}
+
+// A summary that would read 1 TiB.
+TEST(HostileSummary, WithOverlappingGroups_IsReadOnce) {
+  const std::string file = mcap_with_overlapping_groups();
+  const auto source = std::make_shared<memory_source>(bytes_of_text(file));
+  mcap::chunk_source chunks(source);
+  std::size_t metadata = 0;
+  mcap::read_summary(chunks, [&](mcap::opcode kind, mcap::field_reader /*content*/) {
+    if (kind == mcap::opcode::metadata) ++metadata;
+  });
+  EXPECT_GE(metadata, 1U);
+  EXPECT_LE(metadata, 2U);
+  EXPECT_LT(source->bytes_read(), std::uint64_t{16} << 20U);
+}
+
 /// A file with such chunks between its own.
 std::string file_around(const std::string& between) {
   const temporary_path path;
@@ -69,6 +102,13 @@ TEST_F(HostileChunks, IntactChunksAroundThem_AreRead) {
   EXPECT_EQ(found.readings, numbers(0, 400));
   EXPECT_EQ(found.damage.chunks_lost, 300U);
   EXPECT_EQ(found.damage.bytes_skipped, 300 * hostile_chunk().size());
+}
+
+TEST_F(HostileChunks, IntactChunksAroundThoseOfNoChannel_AreRead) {
+  const contents found =
+      contents_of_bytes(bytes_of_text(file_around(repeated(chunk_of_a_foreign_message(), 300))));
+  EXPECT_EQ(found.readings, numbers(0, 400));
+  EXPECT_GT(found.damage.chunks_lost, 200U);
 }
 
 TEST_F(HostileChunks, MessagesOfOtherPrograms_AreNoDamage) {

@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -130,6 +131,44 @@ TEST_F(ModelRecording, AnUnknownModelIsRefusedByName) {
   EXPECT_THAT(reader.error().message(), HasSubstr("of the model z9"));
   EXPECT_THAT(reader.error().message(), HasSubstr(path("made.mcap")));
   EXPECT_EQ(lidar::open(path("made.mcap")).error(), problem::bad_file);
+}
+
+/// The chunks of the second recording behind those of the first one.
+std::string joined_files(const std::string& first, const std::string& second) {
+  constexpr std::size_t magic_size = 8;
+  const std::size_t header_size = magic_size + 9 + 4 + 4 + 4;  // at least
+  EXPECT_GT(second.size(), header_size);
+  // Without the end of the first file: its last chunk is followed by the records of the second one.
+  const std::size_t data_end = first.rfind(std::string("\x0F\x04\0\0\0\0\0\0\0", 9));
+  return first.substr(0, data_end) + second.substr(magic_size);
+}
+
+TEST_F(ModelRecording, PartsOfDifferentModelsAreRefusedByName) {
+  const std::string t_mini = text_of(recorded_as(t_mini_));
+  const std::string tg15 = text_of(recorded_as(model_named("tg15"), "tg15.mcap"));
+  const std::string g4 = text_of(recorded_as(nullptr, "g4.mcap"));
+  struct pair {
+    const std::string& first;
+    const std::string& second;
+    const char* words;
+  };
+  for (const auto& [first, second, words] : {pair{t_mini, tg15, "t-mini-pro and tg15"},
+                                             {tg15, t_mini, "tg15 and t-mini-pro"},
+                                             {g4, t_mini, "g4 and t-mini-pro"},
+                                             {t_mini, g4, "t-mini-pro and g4"}}) {
+    std::ofstream(path("joined.mcap"), std::ios::binary) << joined_files(first, second);
+    auto reader = recording_reader::open(path("joined.mcap"));
+    std::optional<error> why;
+    if (!reader) why = reader.error();
+    while (!why) {
+      const auto item = reader->next();
+      if (!item) why = item.error();
+      ASSERT_TRUE(!item || *item) << words << ": the end";
+    }
+    EXPECT_EQ(*why, problem::bad_file);
+    EXPECT_EQ(why->detail(), error_detail::several_models);
+    EXPECT_THAT(why->message(), HasSubstr("joined.mcap, " + std::string(words)));
+  }
 }
 
 TEST_F(ModelRecording, AnotherModelThanTheRecordedOneIsRefused) {

@@ -53,9 +53,18 @@ inline std::string hostile_chunk(const std::string& begin = {}) {
 inline std::string filling_record(std::uint8_t kind) {
   return mcap_record(kind, {}, hostile_chunk_size - 9);
 }
-/// Such a chunk with one message, of a channel that is not described.
-inline std::string chunk_of_a_foreign_message() {
-  return hostile_chunk(filling_record(5) + little_endian(60'000, 2));
+/// Such a chunk with one message of a channel, whose first data are not packed.
+inline std::string chunk_of_a_message(std::uint16_t channel, std::size_t not_packed = 0) {
+  return hostile_chunk(filling_record(5) + little_endian(channel, 2) +
+                       std::string(not_packed, '\x55'));
+}
+/// The same of a channel that is not described.
+inline std::string chunk_of_a_foreign_message() { return chunk_of_a_message(60'000); }
+/// The record of a channel.
+inline std::string mcap_channel(std::uint16_t id, const std::string& name) {
+  const auto text = [](const std::string& of) { return little_endian(of.size(), 4) + of; };
+  return mcap_record(4, little_endian(id, 2) + little_endian(1, 2) + text(name) + text("cdr") +
+                            little_endian(0, 4));
 }
 
 inline std::string repeated(const std::string& text, std::size_t count) {
@@ -64,9 +73,39 @@ inline std::string repeated(const std::string& text, std::size_t count) {
   return all;
 }
 
+inline std::string mcap_begin() {
+  return "\x89MCAP0\r\n" + mcap_record(1, little_endian(0, 4) + little_endian(0, 4));
+}
 inline std::string hostile_mcap(const std::string& chunk, std::size_t count) {
-  return "\x89MCAP0\r\n" + mcap_record(1, little_endian(0, 4) + little_endian(0, 4)) +
-         repeated(chunk, count);
+  return mcap_begin() + repeated(chunk, count);
+}
+
+/// A file of 32 MB that takes long to read: a recorded channel, whose messages are just small enough to be unpacked.
+inline std::string slow_mcap() {
+  constexpr std::size_t enough = std::size_t{16} << 10U;
+  return mcap_begin() + mcap_channel(1, "/g4lidar/from_device") +
+         repeated(chunk_of_a_message(1, enough), 2000);
+}
+
+/// A file of 1 MiB whose summary leads to its metadata a million times.
+inline std::string mcap_with_overlapping_groups() {
+  std::string file = mcap_begin();
+  const std::size_t metadata_at = file.size();
+  constexpr std::size_t content_size = (std::size_t{1} << 20U) - 16;
+  file += mcap_record(12, std::string(content_size, '\0'));
+  file += mcap_record(15, little_endian(0, 4));
+  const std::size_t group_at = file.size();
+  file += repeated(mcap_record(13, little_endian(metadata_at, 8) + little_endian(content_size, 8) +
+                                       little_endian(0, 4)),
+                   1000);
+  const std::size_t group_size = file.size() - group_at;
+  const std::size_t offsets_at = file.size();
+  file += repeated(mcap_record(14, std::string(1, '\x0D') + little_endian(group_at, 8) +
+                                       little_endian(group_size, 8)),
+                   1000);
+  file += mcap_record(
+      2, little_endian(group_at, 8) + little_endian(offsets_at, 8) + little_endian(0, 4));
+  return file + "\x89MCAP0\r\n";
 }
 
 }  // namespace g4lidar::test

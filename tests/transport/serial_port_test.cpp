@@ -118,6 +118,7 @@ TEST(SerialPort, WrongOptions_AreRefused) {
 TEST(SerialPort, WrongKindsOfFile_AreRefused) {
   EXPECT_EQ(why_not("/dev/null"), problem::not_serial);
   EXPECT_EQ(why_not("/dev"), problem::not_serial);
+  EXPECT_EQ(why_not("/dev/ptmx"), problem::not_serial) << "each opening makes a pseudo-terminal";
   const temporary_file file("bytes");
   EXPECT_EQ(why_not(file.path()), problem::not_serial);
   const std::string pipe = file.path() + ".pipe";

@@ -45,7 +45,7 @@ TEST(TcpPort, Addresses_OfOtherForms) {
 
 TEST(TcpPort, PortsThatDoNotExist_AreBadOptions) {
   for (const std::string_view wrong :
-       {"99999", "65536", "0", "-1", "+1", " 1", "1 ", "1x", "0x10"}) {
+       {"99999", "65536", "0", "-1", "+1", " 1", "1 ", "1x", "0x10", "http", "tcpmux"}) {
     const std::string address = "tcp:127.0.0.1:" + std::string(wrong);
     const auto refused = tcp_port::open(address);
     ASSERT_FALSE(refused) << wrong;
@@ -55,7 +55,6 @@ TEST(TcpPort, PortsThatDoNotExist_AreBadOptions) {
         std::string::npos)
         << refused.error().message();
   }
-  EXPECT_EQ(why_not("tcp:127.0.0.1:tcpmux"), problem::cannot_connect) << "the name of a service";
 }
 
 TEST(TcpPort, NoListener_CannotConnect) {

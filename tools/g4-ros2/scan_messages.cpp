@@ -46,7 +46,7 @@ void scan_messages::publish_scan(const scan& for_grid, const grid_options& grid,
 
 void scan_messages::publish_points(const scan& kept, const scan_times& when) {
   message_header header = header_of(*kept.model, when);
-  if (!kept.empty()) header.stamp_ns = kept.time_ns() + when.ahead_ns;
+  if (!kept.empty()) header.stamp_ns = cloud_time_ns(kept.points) + when.ahead_ns;
   message_.clear();
   put_point_cloud2(kept.points, header, message_);
   points_->publish(message_);

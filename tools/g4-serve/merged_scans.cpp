@@ -82,7 +82,7 @@ class merged_scans final : public scan_maker {
                          .points_of_each = all.kept_of_each});
     }
     if (wanted.wants(channel::scan)) sender_.send_ranges(all.for_grid, when, all.longest_mm);
-    if (wanted.wants(channel::points)) sender_.send_points(all.kept, when);
+    if (wanted.wants(channel::points)) sender_.send_points(all.kept, when, all.when.first_ns);
   }
 
   scan_sender& sender_;

@@ -36,10 +36,12 @@ void scan_sender::send_ranges(const g4lidar::scan& for_grid, const scan_stamp& w
   registry_.publish(channel::scan, when.stamp_ns, std::move(message));
 }
 
-void scan_sender::send_points(const g4lidar::scan& kept, const scan_stamp& when) {
+void scan_sender::send_points(const g4lidar::scan& kept, const scan_stamp& when,
+                              std::int64_t time_ns) {
+  const std::int64_t since_ns = kept.empty() ? 0 : cloud_time_ns(kept.points) - time_ns;
   std::vector<std::uint8_t> message;
   put_point_cloud2(kept.points,
-                   {.stamp_ns = when.stamp_ns,
+                   {.stamp_ns = when.stamp_ns + since_ns,
                     .frame_id = frame_id_,
                     .duration_ns = when.duration_ns,
                     .model = kept.model},

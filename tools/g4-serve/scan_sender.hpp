@@ -30,8 +30,8 @@ class scan_sender {
   void send_page(const page_scan& what);
   /// A LaserScan of scan_shaper::for_grid().
   void send_ranges(const g4lidar::scan& for_grid, const scan_stamp& when, float longest_mm = 0.0F);
-  /// A PointCloud2 of scan_shaper::kept().
-  void send_points(const g4lidar::scan& kept, const scan_stamp& when);
+  /// A PointCloud2 of scan_shaper::kept(). `time_ns` is the time of `when` by the clock of its points.
+  void send_points(const g4lidar::scan& kept, const scan_stamp& when, std::int64_t time_ns);
   /// What a device sent, as a message of recordings.
   void send_bytes(std::int64_t stamp_ns, std::vector<std::uint8_t> message);
 

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include "cli/exit_code.hpp"
@@ -123,11 +124,6 @@ page_status served_lidar::status() {
 }
 
 void served_lidar::set(const std::string& word, answer_function done) {
-  try {
-    static_cast<void>(change_of(word));
-  } catch (const bad_value& reason) {
-    return done(reason.what());
-  }
   reader().ask(
       [this, word, then = std::move(done)](g4lidar::lidar* lidar) { execute(lidar, word, then); });
 }
@@ -135,7 +131,13 @@ void served_lidar::set(const std::string& word, answer_function done) {
 void served_lidar::execute(g4lidar::lidar* lidar, const std::string& word,
                            const answer_function& done) {
   if (lidar == nullptr) return done("the lidar is not connected");
-  const setting_change wanted = change_of(word);
+  std::optional<setting_change> read;
+  try {
+    read = change_of(word, candidates_of(*lidar).front());
+  } catch (const bad_value& reason) {
+    return done(reason.what());
+  }
+  const setting_change wanted = *read;
   const auto given = lidar->ask(change_to(wanted.value), while_scanning::stop_and_resume);
   if (!given) return done(in_tool_words(given.error().message()));
   {

@@ -38,7 +38,9 @@ void single_scans::add(served_lidar& from, const g4lidar::scan& found) {
                        .is_upside_down = scans_.is_upside_down()});
   }
   if (wanted.wants(channel::scan)) sender_.send_ranges(shaped.for_grid(), when);
-  if (wanted.wants(channel::points)) sender_.send_points(shaped.kept(), when);
+  if (wanted.wants(channel::points)) {
+    sender_.send_points(shaped.kept(), when, found.time_ns());
+  }
 }
 
 std::vector<std::function<g4lidar::diagnostic_status()>> single_scans::reports() {

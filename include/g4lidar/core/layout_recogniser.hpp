@@ -194,11 +194,12 @@ class layout_recogniser {
     if (const std::uint8_t id = sent->id(); id != 0) {
       const model* const named = model_with_id(id, link_kind::two_way);
       if (named != nullptr && fits(*named)) return {named, recognised_by::number};
-      const auto has_id = [&](const model& row) {
-        return fits(row) && (row.ids[0] == id || row.ids[1] == id);
-      };
-      const auto near = nearest(*sent, has_id, without_number);
-      if (near.which != nullptr) return near;
+      for (const std::size_t place :
+           {0U, 1U}) {  // the rates of the lines, which decide, are not known
+        const auto has_id = [&](const model& row) { return fits(row) && row.ids[place] == id; };
+        const auto near = nearest(*sent, has_id, without_number);
+        if (near.which != nullptr) return near;
+      }
     }
     if (const auto& stated = sent->information(); stated && stated->id_low_bits != 0) {
       const auto informs = [&](const model& row) {

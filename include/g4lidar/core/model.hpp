@@ -91,7 +91,7 @@ inline constexpr auto models = [] {
        g4_model.rates,   set_5_to_12,  {100, 16000}, 180, 0,   unknown, unknown},
       {"f4",             "F4",             {1},     {115200},         quarter_samples, two_way, command,
        fixed(4000),      set_5_to_12,  {120, 12000}, 180, 0,   no,      unknown},
-      {"f4-pro",         "F4 Pro",         {8},     {230400},         quarter_samples, two_way, command,
+      {"f4-pro",         "F4 Pro",         {8, 4},  {230400},         quarter_samples, two_way, command,
        f4_rates,         set_5_to_12,  {120, 12000}, 180, 0,   yes,     unknown, true},
       {"g1",             "G1",             {19},    {230400},         zeroed_samples , two_way, command,
        fixed(9000, 280), set_5_to_12,  {100, 16000}, 180, 4,   unknown, unknown},

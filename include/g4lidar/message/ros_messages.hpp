@@ -110,11 +110,15 @@ G4LIDAR_API void put_laser_scan(std::span<const float> ranges_m, const message_h
                                 std::vector<std::uint8_t>& out);
 
 /// Appends a sensor_msgs/msg/PointCloud2 of the returns among `points`, in their order, as measured:
-/// float32 x, y, z in metres (z is 0), uint32 t, nanoseconds since the first of `points`, float32
+/// float32 x, y, z in metres (z is 0), uint32 t, nanoseconds since cloud_time_ns(), float32
 /// range in metres and float32 angle in radians, counter-clockwise from x; of
 /// models that have it also float32 intensity, point::intensity. One row, is_dense. Allocates beyond the capacity of `out`.
 G4LIDAR_API void put_point_cloud2(std::span<const point> points, const message_header& header,
                                   std::vector<std::uint8_t>& out);
+
+/// The earliest time of `points` that is known, that of the first one in a scan of one lidar: what the stamp of their
+/// PointCloud2 states. 0 if none is known. *Pure.*
+[[nodiscard]] G4LIDAR_API std::int64_t cloud_time_ns(std::span<const point> points) noexcept;
 
 /// A sensor_msgs/PointField with one number.
 struct cloud_field {

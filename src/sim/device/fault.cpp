@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "sim/read_time.hpp"
+#include "sim/world/world_text.hpp"
 
 namespace g4lidar::sim {
 namespace {
@@ -124,9 +125,8 @@ std::optional<std::int64_t> read_amount(std::string_view text, amount_is what) n
 }
 
 fault_error wrong(std::string_view what, std::string_view is) {
-  std::string message = "'";
-  message.append(what).append("' ").append(is);
-  return {message};
+  constexpr std::size_t enough = 60;
+  return {quoted(what, enough).append(" ").append(is)};
 }
 
 // "a@b" returns "a" and leaves "b"; nothing if there is no '@'.

@@ -189,7 +189,7 @@ inline constexpr auto g_models = [] {
       named(g4, "g4-pro", 7),
       g5,
       named(f4, "f4", 1),
-      named(f4_pro, "f4-pro", 8),
+      named(f4_pro, "f4-pro", 8, 4),
       named(g1, "g1", 19),
       named(g2, "g2", 15),
       named(g2a, "g2a", 14),

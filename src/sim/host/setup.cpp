@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "sim/read_time.hpp"
+#include "sim/world/world_text.hpp"
 #include "transport/text_file.hpp"
 
 namespace g4lidar::sim {
@@ -123,7 +124,8 @@ constexpr auto words_of(power_down_protection) { return std::array{"on"sv, "off"
 constexpr auto words_of(bool) { return std::array{"false"sv, "true"sv}; }
 
 std::string refused(std::string_view value, std::string_view why) {
-  return "'" + std::string(value) + "' " + std::string(why);
+  constexpr std::size_t enough = 60;
+  return quoted(value, enough) + " " + std::string(why);
 }
 
 std::string read_into(std::int64_t& time_ns, std::string_view value) {

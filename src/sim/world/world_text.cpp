@@ -51,8 +51,7 @@ std::string_view next_word(std::string_view& line) noexcept {
   return word;
 }
 
-std::string quoted(std::string_view word) {
-  constexpr std::size_t enough = 24;
+std::string quoted(std::string_view word, std::size_t enough) {
   std::string out = "'";
   for (const char c : word.substr(0, enough)) out += c >= ' ' && c <= '~' ? c : '?';
   out += word.size() > enough ? "...'" : "'";

@@ -13,7 +13,7 @@ namespace g4lidar::sim {
 [[nodiscard]] std::string_view next_word(std::string_view& line) noexcept;
 
 /// A word for an error message, safe to print.
-[[nodiscard]] std::string quoted(std::string_view word);
+[[nodiscard]] std::string quoted(std::string_view word, std::size_t enough = 24);
 
 /// How many numbers were read, or the error.
 struct numbers_read {

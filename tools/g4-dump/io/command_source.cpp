@@ -4,53 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <cstdint>
 #include <string>
-#include <utility>
-#include <variant>
 
 #include "cli/logger.hpp"
-#include "g4lidar/core/stream_parser.hpp"
 #include "io/output.hpp"
 
 namespace g4_tool {
-namespace {
-
-/// In this time the slowest lidar sends a packet.
-constexpr std::int64_t listen_ns = 60'000'000;
-
-/// Whether a packet arrives. Errors are left to the driver, which reports them.
-bool hears_packet(transport& port, sample_format samples, std::int64_t deadline_ns) {
-  stream_parser parser(samples);
-  std::array<std::uint8_t, 1024> buffer;
-  bool found = false;
-  while (!found && port.now_ns() < deadline_ns) {
-    const auto got = port.read(buffer, deadline_ns);
-    if (!got || got->count == 0) return false;
-    parser.feed(bytes(buffer).first(got->count), [&found](const event& what) {
-      found = found || std::holds_alternative<packet_view>(what);
-    });
-  }
-  return found;
-}
-
-/// Options that wait for a packet before anything is sent. The driver alone would report a scan only if
-/// it receives a whole packet before the device obeys its stop.
-lidar_options listening(bool& heard) {
-  lidar_options how;
-  how.wrap = [&heard](std::unique_ptr<connector> from) {
-    const g4lidar::model* const which = from->traits().model;
-    const sample_format samples = which != nullptr ? which->samples : g4_format;
-    return for_each_connection([&heard, samples](std::unique_ptr<transport> port) {
-      if (hears_packet(*port, samples, port->now_ns() + listen_ns)) heard = true;
-      return port;
-    })(std::move(from));
-  };
-  return how;
-}
-
-}  // namespace
 
 void refuse_files(const common_options& options, task doing) {
   const source_kind kind = kind_of_source(options.source);
@@ -59,12 +18,10 @@ void refuse_files(const common_options& options, task doing) {
 }
 
 command_source::command_source(const common_options& options, task doing)
-    : source_((refuse_files(options, doing), options), listening(was_scanning_)) {
+    : source_((refuse_files(options, doing), options)) {
   while (const auto event = lidar().next_event()) {
     was_scanning_ = was_scanning_ || event->what == lidar_event::kind::found_scanning;
   }
-  // A one-way lidar always scans, and nothing stops it.
-  was_scanning_ = was_scanning_ && source_.model().link == g4lidar::link_kind::two_way;
   if (was_scanning_)
     logger::info(fmt::format("{}: was scanning and has been stopped\n", lidar().name()));
 }

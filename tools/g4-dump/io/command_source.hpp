@@ -16,8 +16,8 @@ class output;
 /// Throws a failure if the source is a file, which cannot answer.
 void refuse_files(const common_options& options, g4lidar::task doing);
 
-/// A device that is opened for commands, which stops it. It first listens whether the device is scanning,
-/// and logs that. (Discovery by serial number or among several devices has stopped it before.)
+/// A device that is opened for commands, which stops it. Logs whether the device was scanning. (Discovery by serial
+/// number or among several devices has stopped it before.)
 class command_source {
  public:
   /// `doing`: the task in the error for a file. Throws a failure.

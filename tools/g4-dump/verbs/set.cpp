@@ -12,6 +12,7 @@
 #include "cli/settings.hpp"
 #include "g4lidar/core/session/model_requests.hpp"
 #include "g4lidar/lidar_parameters.hpp"
+#include "g4lidar/source.hpp"
 #include "io/command_source.hpp"
 #include "io/interrupt.hpp"
 #include "io/output.hpp"
@@ -21,18 +22,28 @@ namespace g4_tool {
 namespace {
 
 struct set_options : common_options {
-  std::vector<setting_change> changes;
+  std::vector<std::string> changes;  ///< NAME=VALUE.
 };
 
 void add_change(set_options& options, const std::string& word) {
   if (!is_change(word))
     throw bad_value(fmt::format("'{}' is not NAME=VALUE such as sample_rate=9k", word));
-  const setting_change added = change_of(word);
-  for (const setting_change& earlier : options.changes) {
-    if (earlier.which == added.which)
+  options.changes.push_back(word);
+}
+
+/// With the limits of the model, if it is known before the lidar is opened.
+std::vector<setting_change> changes_of(const set_options& options) {
+  const g4lidar::model* const named = options.expected.model;
+  const g4lidar::model* const which =
+      named != nullptr ? named : g4lidar::model_of_source(options.source).value_or(nullptr);
+  std::vector<setting_change> all;
+  for (const std::string& word : options.changes) {
+    const setting_change added = change_of(word, which);
+    if (std::ranges::find(all, added.which, &setting_change::which) != all.end())
       throw bad_value(fmt::format("{} is given twice", added.which->name));
+    all.push_back(added);
   }
-  options.changes.push_back(added);
+  return all;
 }
 
 void write_row(output& out, std::string_view name, std::string_view before,
@@ -68,8 +79,8 @@ std::string possible_values(const g4lidar::model& which, const setting_info& of)
 }
 
 /// Throws a bad_value if the lidar cannot have one of the values: then nothing is changed.
-void check(const set_options& options, const g4lidar::model& which) {
-  for (const setting_change& each : options.changes) {
+void check(const std::vector<setting_change>& changes, const g4lidar::model& which) {
+  for (const setting_change& each : changes) {
     const request wanted = change_to(each.value);
     if (!has_request(which, wanted.what) || is_possible(wanted, which)) continue;
     throw bad_value(fmt::format("{}={}: {} {} {}", each.which->name, text_of(each.value),
@@ -92,16 +103,17 @@ void report_consequences(const std::vector<setting_change>& changes) {
 int set(const set_options& options) {
   if (options.changes.empty())
     throw bad_value("nothing to set; give NAME=VALUE such as sample_rate=9k");
+  const std::vector<setting_change> changes = changes_of(options);
   output out("-");
   command_source source(options, task::configuring);
-  check(options, *candidates_of(source.lidar()).front());
+  check(changes, *candidates_of(source.lidar()).front());
   if (!options.json) write_row(out, "NAME", "BEFORE", "AFTER");
-  for (const setting_change& each : options.changes) {
+  for (const setting_change& each : changes) {
     if (interrupt() != 0) return 128 + interrupt();
     execute(source.lidar(), each, out, options.json);
   }
   out.commit();
-  report_consequences(options.changes);
+  report_consequences(changes);
   return static_cast<int>(exit_code::ok);
 }
 

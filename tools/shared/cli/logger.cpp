@@ -12,6 +12,20 @@
 namespace g4_tool {
 namespace {
 
+/// What is too long for a message, such as a word that nobody has typed, is shortened.
+std::string shortened(std::string_view text) {
+  constexpr std::size_t longest_word = 300;
+  constexpr std::size_t enough = 100;
+  std::string all;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find(' ', 1), text.size());
+    const bool is_long = end > longest_word;
+    all.append(text.substr(0, is_long ? enough : end)).append(is_long ? "..." : "");
+    text.remove_prefix(end);
+  }
+  return all;
+}
+
 std::string printable_lines(std::string_view text) {
   std::string shown;
   while (true) {
@@ -98,11 +112,12 @@ void verbose(std::string_view message) {
 }
 
 void error(std::string_view sentences, exit_code code, std::string_view problem) {
+  const std::string text = shortened(sentences);
   if (!our_global_options().json_errors) {
-    return write(fmt::format("{}: {}\n", this_program().name, printable_lines(sentences)));
+    return write(fmt::format("{}: {}\n", this_program().name, printable(text)));
   }
   nlohmann::ordered_json line;
-  line["error"] = sentences;
+  line["error"] = text;
   if (!problem.empty()) line["problem"] = problem;
   line["exit_code"] = static_cast<int>(code);
   write(json_line(line));

@@ -50,13 +50,13 @@ bool is_change(std::string_view word) noexcept {
   return end != std::string_view::npos && end > 0 && word[end] == '=';
 }
 
-setting_change change_of(const std::string& word) {
+setting_change change_of(const std::string& word, const g4lidar::model* of) {
   const std::size_t equals = word.find('=');
   choices<const setting_info*> names;
   for (const setting_info& each : all_settings()) names.emplace_back(each.name, &each);
   const setting_info& which = *choice_of(word.substr(0, equals), names);
   const std::string wanted = word.substr(equals + 1);
-  const auto value = value_in(which, wanted);
+  const auto value = value_in(which, wanted, of);
   if (value) return {&which, *value};
   throw bad_value(std::string(value.error().subject()) + did_you_mean(wanted, value_words(which)));
 }

@@ -33,8 +33,8 @@ struct setting_change {
 /// does not.
 [[nodiscard]] bool is_change(std::string_view word) noexcept;
 
-/// "sample_rate=9k". Throws bad_value, with what is possible.
-[[nodiscard]] setting_change change_of(const std::string& word);
+/// "sample_rate=9k". Throws bad_value, with what is possible with a lidar of this model, or of any if that is null.
+[[nodiscard]] setting_change change_of(const std::string& word, const g4lidar::model* of = nullptr);
 
 /// What the device answers; nothing if it cannot be asked for this, or does not answer. Throws a
 /// failure if the device is lost.

@@ -125,8 +125,11 @@ g4lidar::merged scan_merger::merged_points(std::vector<point> part::* which,
   const g4lidar::merged all = moved.twist
                                   ? g4lidar::merge_scans(lidars, *moved.twist, reference_ns, out)
                                   : g4lidar::merge_scans(lidars, moved.path, reference_ns, out);
-  // All of them are where they would have been seen at that time.
-  for (point& p : all.points) p.time_ns = reference_ns;
+  if (deskew_ == deskewing::none) return all;
+  // These are where they would have been seen at that time.
+  for (point& p : all.points) {
+    if (!p.is_not_deskewed()) p.time_ns = reference_ns;
+  }
   return all;
 }
 

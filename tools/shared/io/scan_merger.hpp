@@ -37,7 +37,8 @@ struct robot_motion {
   std::span<const g4lidar::stamped_pose> path{};
 };
 
-/// One scan of all lidars, at the time `when.first_ns`. Its model has the turn of a G4, the shortest range of all, and
+/// One scan of all lidars, at the time `when.first_ns`. Points that are deskewed have this time; all others have their own,
+/// and are flagged not_deskewed if deskewing was wanted. Its model has the turn of a G4, the shortest range of all, and
 /// intensities if one of them has. Valid during a call.
 struct merged_scan {
   g4lidar::scan for_grid;  ///< See scan_shaper::for_grid().

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: MIT
+// Bytes that are no packet and no answer: the errors state how many arrived, and how they begin.
+#include "driver/unrecognised_bytes.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "g4lidar/diagnostics/diagnostic_run.hpp"
+#include "g4lidar/discovery.hpp"
+#include "g4lidar/lidar.hpp"
+#include "g4lidar/transport/transport.hpp"
+
+namespace g4lidar::test {
+namespace {
+
+using ::testing::HasSubstr;
+using octets = std::vector<std::uint8_t>;
+
+/// Answers the command 90 with these bytes, or everything with itself; in virtual time.
+class answering_port final : public transport {
+ public:
+  explicit answering_port(octets answer) : answer_(std::move(answer)) {}
+
+  result<received> read(std::span<std::uint8_t> out, std::int64_t deadline_ns) noexcept override {
+    const std::size_t count = std::min(out.size(), waiting_.size());
+    if (count == 0) now_ns_ = std::max(now_ns_, deadline_ns);
+    if (count == 0) return received{0, now_ns_};
+    now_ns_ += 1'000'000;
+    std::copy_n(waiting_.begin(), count, out.begin());
+    waiting_.erase(waiting_.begin(), waiting_.begin() + static_cast<std::ptrdiff_t>(count));
+    return received{count, now_ns_};
+  }
+  result<void> write(bytes data, std::int64_t /*deadline_ns*/) noexcept override {
+    const bool is_question = std::ranges::find(data, 0x90) != data.end();
+    if (answer_.empty()) waiting_.insert(waiting_.end(), data.begin(), data.end());
+    if (is_question) waiting_.insert(waiting_.end(), answer_.begin(), answer_.end());
+    return {};
+  }
+  result<bool> set_baud(std::uint32_t baud) noexcept override {
+    baud_ = baud;
+    return true;
+  }
+  result<void> pause(std::int64_t deadline_ns) noexcept override {
+    now_ns_ = std::max(now_ns_, deadline_ns);
+    return {};
+  }
+  [[nodiscard]] std::int64_t now_ns() const noexcept override { return now_ns_; }
+  void wake() noexcept override {}
+  [[nodiscard]] std::string_view name() const noexcept override { return "port"; }
+  [[nodiscard]] std::uint32_t baud() const noexcept override { return baud_; }
+
+ private:
+  octets answer_;
+  octets waiting_;
+  std::int64_t now_ns_ = 0;
+  std::uint32_t baud_ = 230'400;
+};
+
+class answering_connector final : public connector {
+ public:
+  explicit answering_connector(octets answer) : answer_(std::move(answer)) {}
+  [[nodiscard]] result<std::unique_ptr<transport>> connect() noexcept override {
+    return std::make_unique<answering_port>(answer_);
+  }
+  [[nodiscard]] std::int64_t now_ns() const noexcept override { return 0; }
+  [[nodiscard]] bool pause(std::int64_t) noexcept override { return true; }
+  void wake() noexcept override {}
+
+ private:
+  octets answer_;
+};
+
+struct sample {
+  const char* name;
+  octets answer;  ///< To the question for the device information; empty: an echo.
+  const char* like;
+  const char* begin;
+};
+
+octets answer_of_21_bytes() {
+  octets all{0xA5, 0x5A, 0x12, 0x00, 0x00, 0x00, 0x04};
+  all.resize(7 + 18, 0x01);
+  return all;
+}
+
+octets text(std::string_view of) { return {of.begin(), of.end()}; }
+
+const std::vector<sample>& samples() {
+  static const std::vector<sample> all{
+      {"AnotherLength", answer_of_21_bytes(), " like an answer of another length",
+       "(A5 5A 12 00 00 00)"},
+      {"Echo", {}, ", an echo of what was sent", "(A5 "},
+      {"Text", text("unknown command\r\n"), " of text", "(75 6E 6B 6E 6F 77)"},
+      {"OneByte", {0x15}, " byte", "(15"},
+      {"Packet", {0xAA, 0x55, 0x00, 0x01, 0x02, 0x03}, " like damaged packets", "(AA 55 00"}};
+  return all;
+}
+
+class BytesWithoutMeaning : public testing::TestWithParam<sample> {};
+
+TEST_P(BytesWithoutMeaning, SearchSaysSo) {
+  answering_port port(GetParam().answer);
+  const auto found = search(port, 3'000'000'000);
+  ASSERT_FALSE(found);
+  EXPECT_EQ(found.error(), problem::garbage) << found.error().message();
+  EXPECT_THAT(found.error().message(), HasSubstr(GetParam().like));
+  EXPECT_THAT(found.error().message(), HasSubstr(GetParam().begin));
+  EXPECT_THAT(found.error().message(), HasSubstr("at 230400, 115200, 128000, 512000, 153600 baud"));
+}
+
+TEST_P(BytesWithoutMeaning, NamedModelSaysSo) {
+  const auto opened =
+      lidar::open(std::make_unique<answering_connector>(GetParam().answer), {.model = &g4_model});
+  ASSERT_FALSE(opened);
+  EXPECT_EQ(opened.error(), problem::garbage) << opened.error().message();
+  EXPECT_THAT(opened.error().message(), HasSubstr(GetParam().like));
+  EXPECT_THAT(opened.error().message(), HasSubstr(GetParam().begin));
+}
+
+TEST_P(BytesWithoutMeaning, DoctorSaysSo) {
+  const auto stages = diagnose(std::make_unique<answering_port>(GetParam().answer), {});
+  std::string remarks;
+  for (const stage_report& each : stages) remarks += each.remark + '\n';
+  EXPECT_THAT(remarks, HasSubstr(GetParam().like));
+  EXPECT_THAT(remarks, HasSubstr(GetParam().begin));
+}
+
+INSTANTIATE_TEST_SUITE_P(Kinds, BytesWithoutMeaning, testing::ValuesIn(samples()),
+                         [](const auto& of) { return std::string(of.param.name); });
+
+TEST(UnrecognisedBytes, AreCountedAndShownShortly) {
+  unrecognised_bytes heard;
+  EXPECT_EQ(std::string_view(heard.text()), "");
+  heard.received(octets{0xC0});
+  EXPECT_EQ(std::string_view(heard.text()), ", 1 byte (C0)");
+  heard.received(octets(1'000'000, 0xF8));
+  EXPECT_EQ(std::string_view(heard.text()), ", 1000001 bytes (C0 F8 F8 F8 F8 F8)");
+  EXPECT_EQ(heard.count(), 1'000'001U);
+}
+
+}  // namespace
+}  // namespace g4lidar::test
