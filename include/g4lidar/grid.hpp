@@ -28,7 +28,7 @@ enum class grid_pick : std::uint8_t {
 enum class no_return_as : std::uint8_t {
   infinity,  ///< +infinity, as REP 117 has it for "no return within the range".
   nan,       ///< NaN: nothing is known.
-  max,       ///< The longest range, the range_max of a LaserScan, for programs that want numbers.
+  max,  ///< grid_options::longest_mm, the range_max of a LaserScan, for programs that want numbers.
 };
 
 /// How to fill a grid. The defaults are those of a ROS LaserScan that begins at -pi.
@@ -48,15 +48,16 @@ struct grid_options {
   bool near_is_minus_infinity = false;
   /// model::turn_deg of the lidar, 0 or 180. With a scan, that of its model is used instead.
   std::uint16_t turn_deg = g4_model.turn_deg;
-  /// For no_return_as::max, in millimetres: longest_range_mm() of the lidar's samples. With a scan,
-  /// that of its model is used instead.
-  float longest_mm = longest_range_mm(g4_layout);
+  /// What no_return_as::max is, in millimetres: where a filter leaves out what is farther, its limit. With a
+  /// scan it is at most the longest range of its model by the manufacturer; 0: that one, without a scan a G4's.
+  float longest_mm = 0.0F;
 
   /// The same options for a lidar like `which`. *Pure.*
   [[nodiscard]] constexpr grid_options with(const model& which) const noexcept {
     grid_options made = *this;
     made.turn_deg = which.turn_deg;
-    made.longest_mm = longest_range_mm(which.samples.layout);
+    const auto most_mm = static_cast<float>(which.range.max_mm);
+    if (!(longest_mm > 0.0F && longest_mm < most_mm)) made.longest_mm = most_mm;
     return made;
   }
 };
@@ -128,9 +129,10 @@ constexpr void fill_grid(std::span<const point> points, std::span<float> ranges_
   }
   constexpr float nan = std::numeric_limits<float>::quiet_NaN();
   constexpr float infinity = std::numeric_limits<float>::infinity();
+  const float longest_mm = options.longest_mm > 0.0F ? options.longest_mm : g4_model.range.max_mm;
   const auto of_no_return = [&] {
     if (options.no_return == no_return_as::nan) return nan;
-    return options.no_return == no_return_as::max ? options.longest_mm * 0.001F : infinity;
+    return options.no_return == no_return_as::max ? longest_mm * 0.001F : infinity;
   }();
   const auto value_of = [&](const point& p) {
     switch (worth(p)) {

@@ -168,7 +168,7 @@ void bind_scan(nb::module_& module) {
           "keep_too_near"_a = false, "no_return"_a = no_return_as::infinity,
           "The scan on a grid of `n` directions (1 to 65536; by default by the model, 720 for a "
           "G4), in metres: inf where nothing came back (or `no_return`: 'nan', 'max' for the "
-          "longest range, 16.38375 for a G4), NaN where nothing is known. inf is "
+          "longest range of the model, 16 for a G4), NaN where nothing is known. inf is "
           "not free space: what is nearer than 0.28 m may give no return; see ScanShaper. In the "
           "frame 'robot' range 0 is at -180 degrees, and the next ones follow "
           "counter-clockwise; in "

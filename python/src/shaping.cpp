@@ -225,17 +225,16 @@ void bind_shaping(nb::module_& module) {
          const std::optional<unsigned>& turn_deg, std::optional<float> longest_mm,
          const std::optional<std::string>& word) {
         const model& which = model_or_g4(word);
-        return to_ranges(
-            points, n.value_or(default_bins(which)),
-            {to, pick, keep_too_near, no_return, near_is_minus_infinity, turn_of(turn_deg, word),
-             longest_mm.value_or(longest_range_mm(which.samples.layout))});
+        return to_ranges(points, n.value_or(default_bins(which)),
+                         {to, pick, keep_too_near, no_return, near_is_minus_infinity,
+                          turn_of(turn_deg, word), longest_mm.value_or(which.range.max_mm)});
       },
       "points"_a, "n"_a = nb::none(), "frame"_a = frame::robot, "pick"_a = grid_pick::nearest,
       "keep_too_near"_a = false, "no_return"_a = no_return_as::infinity,
       "near_is_minus_infinity"_a = false, "turn_deg"_a = nb::none(), "longest_mm"_a = nb::none(),
       nb::kw_only(), "model"_a = nb::none(),
       "The points on a grid of `n` directions, in metres: see Scan.ranges(). `model`: Scan.model; "
-      "None: a G4, with 720 directions, a turn of 180 and 16383.75 mm. `turn_deg`: Scan.turn_deg, "
+      "None: a G4, with 720 directions, a turn of 180 and 16000 mm. `turn_deg`: Scan.turn_deg, "
       "without "
       "`model`. `longest_mm`: what 'max' is, in millimetres; None: by the model.");
   module.def(

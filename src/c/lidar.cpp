@@ -132,7 +132,7 @@ void fill(g4lidar_scan& out, const scan& from) noexcept {
   out.is_whole = from.is_whole();
   out.is_piece = from.is_piece();
   out.turn_deg = from.model->turn_deg;
-  out.longest_range_mm = longest_range_mm(from.model->samples.layout);
+  out.longest_range_mm = from.model->range.max_mm;
   out.default_bins = default_bins(*from.model);
   out.model = literal(from.model->word);
 }

@@ -72,7 +72,7 @@ int g4lidar_grid_options_set_model(g4lidar_grid_options* options, const char* mo
       offsetof(g4lidar_grid_options, longest_range_mm) + sizeof options->longest_range_mm;
   if (options->struct_size < end) return G4LIDAR_BAD_ARGUMENT;
   options->turn_deg = of->turn_deg;
-  options->longest_range_mm = longest_range_mm(of->samples.layout);
+  options->longest_range_mm = of->range.max_mm;
   return G4LIDAR_OK;
 }
 

@@ -25,7 +25,7 @@ inline constexpr g4lidar_grid_options grid_defaults{sizeof(g4lidar_grid_options)
                                                     G4LIDAR_NO_RETURN_AS_INFINITY,
                                                     0,
                                                     g4_model.turn_deg,
-                                                    longest_range_mm(g4_layout)};
+                                                    g4_model.range.max_mm};
 inline constexpr g4lidar_outlier_options outlier_defaults{
     sizeof(g4lidar_outlier_options), 2, 1, 0.05F, -1.0F, 1, 5.0F, false, {}};
 inline constexpr g4lidar_near_options near_defaults{sizeof(g4lidar_near_options), 0.0F, 3, {}};

@@ -57,6 +57,7 @@ bool take_grid(const g4lidar_recorder_options& given, recording_options& into) {
   grid.near_is_minus_infinity = given.near_is_minus_infinity;
   const auto taken = grid_of(grid);
   if (taken) into.grid = *taken;
+  into.grid.longest_mm = 0.0F;  // that of the model
   if (given.near_options != nullptr) into.near = near_of(given.near_options);
   return taken && (given.near_options == nullptr || into.near.has_value());
 }

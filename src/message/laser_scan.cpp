@@ -51,7 +51,7 @@ void fill_laser_scan(const scan& source, message_header& header, std::size_t bin
   ranges_m.resize(bins);
   intensities.resize(has_intensity(*source.model) ? bins : 0);
   grid_options how = grid.with(*source.model);
-  if (header.longest_mm > 0.0F) how.longest_mm = header.longest_mm;
+  header.longest_mm = how.longest_mm;
   how.to = frame::robot;
   header.first_bin = 0;
   if (header.order == scan_order::time) {
@@ -74,7 +74,7 @@ laser_scan_numbers numbers_of(const message_header& header, std::size_t wanted_b
   const float from_begin = begin + increment * static_cast<float>(first);
   const float least = from_begin < pi ? from_begin : from_begin - 2 * pi;
   const float longest_mm =
-      header.longest_mm > 0.0F ? header.longest_mm : longest_range_mm(header.model->samples.layout);
+      header.longest_mm > 0.0F ? header.longest_mm : static_cast<float>(header.model->range.max_mm);
   const float duration_s = static_cast<float>(header.duration_ns) * 1e-9F;
   return {.angle_min_rad = least,
           .angle_max_rad = least + increment * static_cast<float>(bins - 1),

@@ -182,6 +182,7 @@ lidar_parameters::lidar_parameters(const shaping_options& how, filter_settings s
 }
 
 void lidar_parameters::shape() {
+  now_.grid.longest_mm = now_.filter.greatest_range_mm;
   how_.filter = now_.filter;
   how_.filter.ignored_sectors = now_.ignored;
   how_.filter.masks = mask_.polygons();

@@ -22,7 +22,7 @@ TEST(CLidar, GivesWholeRevolutions) {
   EXPECT_FALSE(scan->is_piece);
   EXPECT_STREQ(scan->model, "g4");
   EXPECT_EQ(scan->turn_deg, 180);
-  EXPECT_EQ(scan->longest_range_mm, 16383.75F);
+  EXPECT_EQ(scan->longest_range_mm, 16000.0F);
   EXPECT_EQ(scan->default_bins, 720U);
   EXPECT_EQ(scan->flags, 0U);
   EXPECT_EQ(scan->time_ns, scan->points[0].time_ns);

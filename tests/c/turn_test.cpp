@@ -74,7 +74,7 @@ TEST_P(CTurn, Grids) {
   EXPECT_EQ(g4lidar_grid_options_set_model(&options, "x44"), G4LIDAR_BAD_ARGUMENT);
   ASSERT_EQ(g4lidar_grid_options_set_model(&options, nullptr), G4LIDAR_OK);
   EXPECT_EQ(options.turn_deg, 180U);
-  EXPECT_EQ(options.longest_range_mm, 16383.75F);
+  EXPECT_EQ(options.longest_range_mm, 16000.0F);
 }
 
 TEST(CTurn, OptionsOfAnOlderProgramHaveNoModel) {

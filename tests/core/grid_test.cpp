@@ -67,7 +67,7 @@ TEST(Grid, NoReturn_BecomesWhatTheOptionSets) {
   };
   EXPECT_EQ(range_at_90(no_return_as::infinity), infinity);
   EXPECT_TRUE(std::isnan(range_at_90(no_return_as::nan)));
-  EXPECT_EQ(range_at_90(no_return_as::max), 16.38375F);
+  EXPECT_EQ(range_at_90(no_return_as::max), 16.0F);
   EXPECT_EQ(grid_options{}.no_return, no_return_as::infinity);
 }
 

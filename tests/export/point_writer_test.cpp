@@ -273,7 +273,7 @@ TEST(Grid, WritesWhatDirectionsWithoutReturnBecome) {
                          .no_return = no_return_as::max};  // its frame is not used
   const grid_options minus{.near_is_minus_infinity = true};
   EXPECT_THAT(line_of(text_format::csv, {}), EndsWith("false,1234.50,inf,nan,nan\n"));
-  EXPECT_THAT(line_of(text_format::csv, max), EndsWith("false,1234.50,16383.75,nan,nan\n"));
+  EXPECT_THAT(line_of(text_format::csv, max), EndsWith("false,1234.50,16000.00,nan,nan\n"));
   EXPECT_THAT(line_of(text_format::csv, {.no_return = no_return_as::nan}),
               EndsWith("false,1234.50,nan,nan,nan\n"));
   EXPECT_THAT(line_of(text_format::csv, minus), EndsWith("false,1234.50,inf,-inf,nan\n"));

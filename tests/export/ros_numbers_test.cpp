@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <limits>
 #include <vector>
 
 #include "g4lidar/core/model.hpp"
@@ -27,9 +29,9 @@ TEST(LaserScan, NumbersForProgramsThatFillAMessageThemselves) {
 }
 
 TEST(LaserScan, TheLongestRangeIsThatOfTheHeader_ElseOfTheModel) {
-  EXPECT_FLOAT_EQ(numbers_of({.model = model_named("x4")}, 4).range_max_m, 16.383F);
-  EXPECT_FLOAT_EQ(numbers_of({.model = model_named("x4"), .longest_mm = 65'535.0F}, 4).range_max_m,
-                  65.535F);
+  EXPECT_FLOAT_EQ(numbers_of({.model = model_named("x4")}, 4).range_max_m, 10.0F);
+  EXPECT_FLOAT_EQ(numbers_of({.model = model_named("x4"), .longest_mm = 6000.0F}, 4).range_max_m,
+                  6.0F);
 }
 
 /// These ranges, in metres.
@@ -74,18 +76,32 @@ TEST(LaserScan, IsFilledInItsOrder_WithTheIntensitiesOfTheModel) {
   EXPECT_TRUE(by_time.intensities.empty());
 }
 
-TEST(LaserScan, TheLongestRangeOfTheHeaderIsThatOfNoReturn) {
-  std::vector<float> ranges;
-  std::vector<float> intensities;
-  message_header header{.longest_mm = 65'535.0F};
+/// The limit of a filter, the model, and what range_max and a direction without return are then, in metres.
+struct longest {
+  float limit_mm;
+  const char* model;
+  float expected_m;
+};
+
+TEST(LaserScan, TheLongestRangeIsTheLimitOfTheFilter_WithinThatOfTheModel) {
+  constexpr float infinity = std::numeric_limits<float>::infinity();
   const std::vector<point> nothing{{.angle_deg = 0.0F, .flags = point_flags::no_return},
                                    {.angle_deg = 180.0F, .flags = point_flags::no_return}};
-  const grid_options how{.no_return = no_return_as::max};
-  fill_laser_scan(quarters(nothing, g4_model), header, 2, how, ranges, intensities);
-  EXPECT_THAT(ranges, about({65.535F, 65.535F}));
-  header.longest_mm = 0.0F;
-  fill_laser_scan(quarters(nothing, g4_model), header, 2, how, ranges, intensities);
-  EXPECT_THAT(ranges, about({16.38375F, 16.38375F})) << "65535 quarters of a millimetre";
+  for (const auto& [limit_mm, word, expected_m] :
+       {longest{0.0F, "g4", 16.0F}, longest{9000.0F, "g4", 9.0F}, longest{infinity, "g4", 16.0F},
+        longest{100'000.0F, "x2", 8.0F}, longest{0.0F, "tg50", 50.0F},
+        longest{20'000.0F, "tg50", 20.0F}, longest{std::nanf(""), "t-mini", 12.0F}}) {
+    for (const scan_order order : {scan_order::angle, scan_order::time}) {
+      std::vector<float> ranges;
+      std::vector<float> intensities;
+      const g4lidar::model& of = *model_named(word);
+      message_header header{.order = order, .model = &of, .longest_mm = 1.0F};
+      const grid_options how{.no_return = no_return_as::max, .longest_mm = limit_mm};
+      fill_laser_scan(quarters(nothing, of), header, 2, how, ranges, intensities);
+      EXPECT_THAT(ranges, about({expected_m, expected_m})) << word;
+      EXPECT_FLOAT_EQ(numbers_of(header, 2).range_max_m, expected_m) << word;
+    }
+  }
 }
 
 TEST(Quaternion, OfATurnAboutZ_AndOfATopThatIsDown) {

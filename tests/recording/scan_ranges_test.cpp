@@ -46,7 +46,7 @@ TEST(ScanRanges, TheModelOfAScan_DecidesTheTurnAndTheNumberOfRanges) {
 /// In the bin of 90 degrees a return at 0.4 m and then none; in that of 180 degrees none.
 TEST(ScanRanges, DirectionsWithoutReturn_BecomeWhatTheOptionsSet) {
   constexpr float infinity = std::numeric_limits<float>::infinity();
-  constexpr float max = 16.38375F;
+  constexpr float max = 16.0F;
   const auto ranges_of = [](const recording_options& how) {
     const temporary_path path;
     auto writer = made_writer(path.text(), how);

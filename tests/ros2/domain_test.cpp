@@ -24,13 +24,25 @@ class Domain : public cli::scratch {
   test_domain domain_;
 };
 
+/// A configuration with this interface.
+std::string interface_of(const std::string& attributes) {
+  return "<CycloneDDS><Domain><General><Interfaces><NetworkInterface " + attributes +
+         "/></Interfaces></General></Domain></CycloneDDS>";
+}
+
 TEST_F(Domain, AConfigurationThatIsRefusedIsAUsageError) {
   cli::write_file(path("broken.xml"), "<CycloneDDS><Domain></General></CycloneDDS>");
   const std::vector<std::pair<std::string, std::string>> refused{
       {"<CycloneDDS><Domain><Foo>1</Foo></Domain></CycloneDDS>", "Foo: unknown element"},
       {"<CycloneDDS><Domain><Foo", "Foo"},
       {"file://" + path("broken.xml"), "General"},
-      {"file://" + path("missing.xml"), "missing.xml"}};
+      {"file://" + path("missing.xml"), "missing.xml"},
+      {interface_of("name=\"nosuch9\""), "nosuch9: does not match an available interface."},
+      {interface_of("address=\"203.0.113.9\""), "203.0.113.9: does not match"},
+      {interface_of("name=\"lo\"/><NetworkInterface name=\"lo\""), "lo: the same interface"},
+      {"<CycloneDDS><Domain><General><ExternalNetworkAddress>a:b</ExternalNetworkAddress></General>"
+       "</Domain></CycloneDDS>",
+       "a:b"}};
   for (const auto& [value, why] : refused) {
     ::setenv("CYCLONEDDS_URI", value.c_str(), 1);
     cli::program tool({"sim:", "--duration", "60"});
@@ -84,11 +96,7 @@ TEST_F(Domain, ALidarThatStandsStillHasNoOdometry) {
 /// Both together made a domain that Cyclone DDS refuses.
 TEST_F(Domain, TheInterfacesOfTheUserWinOverLocalhost) {
   const std::string tag = ::getenv("CYCLONEDDS_URI");
-  ::setenv("CYCLONEDDS_URI",
-           (tag + ",<CycloneDDS><Domain><General><Interfaces><NetworkInterface name=\"lo\"/>"
-                  "</Interfaces></General></Domain></CycloneDDS>")
-               .c_str(),
-           1);
+  ::setenv("CYCLONEDDS_URI", (tag + "," + interface_of("name=\"lo\"")).c_str(), 1);
   EXPECT_THAT(joined_line("sim:", {"--services", "on"}),
               HasSubstr("(LOCALHOST, the interfaces of CYCLONEDDS_URI): publishing"));
 }

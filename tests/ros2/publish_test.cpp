@@ -64,6 +64,24 @@ TEST_F(Publish, EveryScanOfARecordingNumberByNumber) {
   EXPECT_EQ(tool.wait().code, 0);
 }
 
+TEST_F(Publish, TheLongestRangeIsTheLimitOfTheOption_AndTheOrderOfTimeIsExplained) {
+  subscriber<scan_message> scans(domain_, "/scan", dds::laser_scan);
+  cli::program tool({"sim:", "--range", "0.1:2.5", "--no-return", "max", "--order", "time"});
+  std::size_t count = 0;
+  EXPECT_TRUE(comes_true([&] {
+    count += scans.take([](const scan_message& message) {
+      EXPECT_EQ(message.range_max, 2.5F);
+      const std::span ranges(message.ranges._buffer, message.ranges._length);
+      EXPECT_TRUE(std::ranges::none_of(ranges, [](float range) { return range > 2.5F; }));
+    });
+    return count >= 3;
+  }));
+  tool.send(SIGINT);
+  const cli::outcome end = tool.wait();
+  EXPECT_EQ(end.code, 130);
+  EXPECT_NE(end.err.find("--order time is not for slam_toolbox"), std::string::npos) << end.err;
+}
+
 TEST_F(Publish, PointsWithTheirTimes) {
   const std::string file = path("walk.mcap");
   make_recording(file, 3);

@@ -31,7 +31,8 @@ using clock_message = rosgraph_msgs_msg_dds__Clock_;
 /// The variables for programs that this test starts, and for the test itself, and a participant.
 class test_domain {
  public:
-  test_domain() {
+  /// `instead`: of the configuration that g4-ros2 would have.
+  explicit test_domain(const std::string& instead = {}) {
     const std::string tag = std::to_string(identity());
     ::setenv("CYCLONEDDS_URI",
              ("<CycloneDDS><Domain><Discovery><Tag>test_" + tag +
@@ -44,8 +45,10 @@ class test_domain {
     ::setenv("RMW_IMPLEMENTATION", "rmw_cyclonedds_cpp", 1);
     ::unsetenv("ROS_DISTRO");
     const auto wanted = dds::read_network({}, "");
-    domain_ = dds::entity(
-        dds_create_domain(number(), dds::configuration(wanted, !dds::addresses().empty()).c_str()));
+    const std::string how = instead.empty() ? dds::configuration(wanted, !dds::addresses().empty())
+                                            : instead + "," + wanted.more;
+    domain_ = dds::entity(dds_create_domain(number(), how.c_str()));
+    if (dds::is_on_loopback(wanted)) dds::keep_multicast_here();
     participant_ = dds::entity(dds_create_participant(number(), nullptr, nullptr));
     EXPECT_TRUE(participant_);
   }

@@ -53,13 +53,13 @@ TEST_P(UnnamedModel, ScansHaveItsLimitsAndIntensities) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Models, UnnamedModel,
-                         testing::Values(kind{"x4", false, false, 0.12F, 16.383F},
-                                         kind{"x2", false, false, 0.1F, 16.383F},
-                                         kind{"t-mini-pro", false, true, 0.02F, 16.383F},
-                                         kind{"tg15", false, false, 0.05F, 65.535F},
-                                         kind{"g6", false, false, 0.1F, 32.7675F},
-                                         kind{"t-mini-plus-sh", false, true, 0.05F, 65.535F},
-                                         kind{"g2", true, true, 0.1F, 16.383F}),
+                         testing::Values(kind{"x4", false, false, 0.12F, 10.0F},
+                                         kind{"x2", false, false, 0.1F, 8.0F},
+                                         kind{"t-mini-pro", false, true, 0.02F, 12.0F},
+                                         kind{"tg15", false, false, 0.05F, 30.0F},
+                                         kind{"g6", false, false, 0.1F, 25.0F},
+                                         kind{"t-mini-plus-sh", false, true, 0.05F, 25.0F},
+                                         kind{"g2", true, true, 0.1F, 16.0F}),
                          [](const auto& of) {
                            std::string name = of.param.word;
                            std::erase(name, '-');

@@ -175,7 +175,11 @@ TEST_F(Ranges, ANoReturnIsInfinite_ByDefault) { EXPECT_GE(last_with(infinity, {}
 TEST_F(Ranges, ANoReturnIsWhatTheOptionSets) {
   serve_options options;
   options.common.grid.no_return = no_return_as::max;
-  EXPECT_GE(last_with(16.38375F, options), 200U);
+  EXPECT_GE(last_with(16.0F, options), 200U) << "the longest range of a G4";
+  EXPECT_EQ(g4lidar::test::read_laser_scan(last_).range_max, 16.0F);
+  options.common.filter.greatest_range_mm = 9000.0F;
+  EXPECT_GE(last_with(9.0F, options), 200U) << "what is farther is left out";
+  EXPECT_EQ(g4lidar::test::read_laser_scan(last_).range_max, 9.0F);
 }
 TEST_F(Ranges, WhatMayBeTooNearIsMinusInfinity_WithTheOption) {
   serve_options options;

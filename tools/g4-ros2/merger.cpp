@@ -24,9 +24,7 @@ void merger::add(std::size_t index, scan_shaper& scan, const grid_options& grid,
                  const scan_times& when) {
   const bool wants_points = messages_.wants_points();
   scans_.add(index, scan, when, wants_points, [&](const merged_scan& all) {
-    if (messages_.wants_scan()) {
-      messages_.publish_scan(all.for_grid, grid, all.when, all.longest_mm);
-    }
+    if (messages_.wants_scan()) messages_.publish_scan(all.for_grid, grid, all.when);
     if (wants_points) messages_.publish_points(all.kept, all.when);
   });
 }

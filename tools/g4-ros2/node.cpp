@@ -127,6 +127,7 @@ int run_node(const ros2_options& options) {
   if (options.order == scan_order::time && options.common.deskew != deskewing::none) {
     throw bad_value("--order time cannot be used with --deskew: deskewed points have one time");
   }
+  note_order(options.order);
   return node(options).run();
 }
 

@@ -69,14 +69,11 @@ option_rows topic_rows(ros2_options& options) {
 }
 
 option_rows scan_rows(ros2_options& options) {
-  return in_group(
-      "Scans",
-      {choice_row("--order", "Order of the ranges of a LaserScan; time: z is down (angle)",
-                  options.order,
-                  choices<scan_order>{{"angle", scan_order::angle}, {"time", scan_order::time}}),
-       number_row("--grid", "N", "Ranges of each LaserScan (by the model; G4: 720)", options.bins,
-                  1U, 65536U),
-       merge_row(options.merges)});
+  return in_group("Scans",
+                  {order_row(options.order),
+                   number_row("--grid", "N", "Ranges of each LaserScan (by the model; G4: 720)",
+                              options.bins, 1U, 65536U),
+                   merge_row(options.merges)});
 }
 
 option_rows network_rows(ros2_options& options) {

@@ -34,9 +34,8 @@ message_header scan_messages::header_of(const model& which, const scan_times& wh
 }
 
 void scan_messages::publish_scan(const scan& for_grid, const grid_options& grid,
-                                 const scan_times& when, float longest_mm) {
+                                 const scan_times& when) {
   message_header header = header_of(*for_grid.model, when);
-  header.longest_mm = longest_mm;
   fill_laser_scan(for_grid, header, options_.bins.value_or(default_bins(*for_grid.model)), grid,
                   ranges_, intensities_);
   message_.clear();

@@ -27,9 +27,8 @@ class scan_messages {
   scan_messages(dds::bus& on, const ros2_options& options, std::string_view name_space,
                 std::string frame_id);
 
-  /// On /scan: scan_shaper::for_grid(). `longest_mm`: of its ranges; 0: by its model.
-  void publish_scan(const scan& for_grid, const grid_options& grid, const scan_times& when,
-                    float longest_mm = 0.0F);
+  /// On /scan: scan_shaper::for_grid().
+  void publish_scan(const scan& for_grid, const grid_options& grid, const scan_times& when);
   /// On /points: scan_shaper::kept().
   void publish_points(const scan& kept, const scan_times& when);
   /// Whether somebody reads them. *Any thread.*

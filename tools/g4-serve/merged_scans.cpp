@@ -81,7 +81,7 @@ class merged_scans final : public scan_maker {
                          .place = place,
                          .points_of_each = all.kept_of_each});
     }
-    if (wanted.wants(channel::scan)) sender_.send_ranges(all.for_grid, when, all.longest_mm);
+    if (wanted.wants(channel::scan)) sender_.send_ranges(all.for_grid, when);
     if (wanted.wants(channel::points)) sender_.send_points(all.kept, when, all.when.first_ns);
   }
 

@@ -12,7 +12,9 @@ scan_sender::scan_sender(const serve_options& options, client_registry& to)
     : registry_(to),
       frame_id_(frame_id_of(options)),
       bins_(options.bins),
-      grid_(options.common.grid) {}
+      grid_(options.common.grid) {
+  grid_.longest_mm = options.common.filter.greatest_range_mm;
+}
 
 void scan_sender::send_page(const page_scan& what) {
   std::vector<std::uint8_t> message;
@@ -21,14 +23,12 @@ void scan_sender::send_page(const page_scan& what) {
   registry_.page_scan(std::move(message));
 }
 
-void scan_sender::send_ranges(const g4lidar::scan& for_grid, const scan_stamp& when,
-                              float longest_mm) {
+void scan_sender::send_ranges(const g4lidar::scan& for_grid, const scan_stamp& when) {
   const g4lidar::model& model = *for_grid.model;
   message_header header{.stamp_ns = when.stamp_ns,
                         .frame_id = frame_id_,
                         .duration_ns = when.duration_ns,
-                        .model = &model,
-                        .longest_mm = longest_mm};
+                        .model = &model};
   fill_laser_scan(for_grid, header, bins_.value_or(default_bins(model)), grid_, ranges_m_,
                   intensities_);
   std::vector<std::uint8_t> message;

@@ -29,7 +29,7 @@ class scan_sender {
   [[nodiscard]] client_registry::demand wanted() const { return registry_.wanted(); }
   void send_page(const page_scan& what);
   /// A LaserScan of scan_shaper::for_grid().
-  void send_ranges(const g4lidar::scan& for_grid, const scan_stamp& when, float longest_mm = 0.0F);
+  void send_ranges(const g4lidar::scan& for_grid, const scan_stamp& when);
   /// A PointCloud2 of scan_shaper::kept(). `time_ns` is the time of `when` by the clock of its points.
   void send_points(const g4lidar::scan& kept, const scan_stamp& when, std::int64_t time_ns);
   /// What a device sent, as a message of recordings.
@@ -39,7 +39,7 @@ class scan_sender {
   client_registry& registry_;
   const std::string frame_id_;
   const std::optional<std::uint32_t> bins_;
-  const grid_options grid_;
+  grid_options grid_;
   std::vector<float> ranges_m_;
   std::vector<float> intensities_;
 };

@@ -91,7 +91,7 @@ typedef struct g4lidar_scan {
   bool is_whole;                 /**< One revolution without known loss. */
   bool is_piece;                 /**< Only a part of a turn. */
   uint16_t turn_deg;             /**< The turn of its model for G4LIDAR_ROBOT, 0 or 180. */
-  float longest_range_mm;        /**< The longest range that a sample of its model can contain. */
+  float longest_range_mm;        /**< The longest range of its model by the manufacturer. */
   uint32_t default_bins;         /**< Bins of a grid of which few are empty: 720 for a G4. */
   const char* model;             /**< The word of its model, "g4". Valid forever. */
 } g4lidar_scan;
@@ -116,7 +116,7 @@ enum g4lidar_grid_pick {
 enum g4lidar_no_return_as {
   G4LIDAR_NO_RETURN_AS_INFINITY = 0, /**< +infinity (REP 117). */
   G4LIDAR_NO_RETURN_AS_NAN = 1,      /**< NaN. */
-  G4LIDAR_NO_RETURN_AS_MAX = 2       /**< The longest range, the range_max of a LaserScan. */
+  G4LIDAR_NO_RETURN_AS_MAX = 2       /**< g4lidar_grid_options::longest_range_mm. */
 };
 
 /** How to fill a grid. */
@@ -131,7 +131,7 @@ typedef struct g4lidar_grid_options {
   int32_t
       near_is_minus_infinity; /**< 1: what is flagged G4LIDAR_MAY_BE_TOO_NEAR is -infinity; 0: NaN. */
   uint32_t turn_deg;          /**< g4lidar_scan::turn_deg; 180, that of a G4. */
-  float longest_range_mm;     /**< g4lidar_scan::longest_range_mm; 16383.75, that of a G4. */
+  float longest_range_mm;     /**< g4lidar_scan::longest_range_mm; 16000, that of a G4. */
 } g4lidar_grid_options;
 
 /** Sets the defaults, those of a ROS LaserScan; `size` is sizeof(g4lidar_grid_options). */

@@ -25,7 +25,9 @@ enum class scan_order : std::uint8_t {
   /// The device turns the other way, so the times of the ranges are not known: time_increment is 0.
   angle,
   /// In the order in which they were measured, with their real time_increment, in a frame with z
-  /// down: the lidar's own, turned by half a turn about x, so y is to the right.
+  /// down: the lidar's own, turned by half a turn about x, so y is to the right. angle_min changes from
+  /// scan to scan. Not for slam_toolbox, which uses that of the first scan, and takes the angles of a frame
+  /// with z down as symmetrical about 0: its maps would be wrong.
   time,
 };
 
@@ -41,7 +43,7 @@ struct message_header {
   const g4lidar::model* model = &g4_model;
   /// Of a LaserScan: as many as there are ranges, in the same order; empty: it has none.
   std::span<const float> intensities{};
-  /// range_max of a LaserScan, in millimetres; 0: the longest range of the model.
+  /// range_max of a LaserScan, in millimetres; 0: the longest range of the model by the manufacturer.
   float longest_mm = 0.0F;
 };
 
@@ -74,8 +76,8 @@ struct message_schema {
 }
 
 /// Fills `ranges_m` and `intensities` for a LaserScan of `source` in header.order: with `bins` ranges, at least one, as
-/// fill_grid() or fill_time_grid() does, and with as many intensities if the model has them. Sets header.first_bin and
-/// header.intensities, which views `intensities`. header.longest_mm, if it is set, has precedence over the model's.
+/// fill_grid() or fill_time_grid() does, and with as many intensities if the model has them. Sets header.first_bin,
+/// header.longest_mm to that of `how`, limited by the model, and header.intensities, which views `intensities`.
 /// Allocates beyond the capacities.
 G4LIDAR_API void fill_laser_scan(const scan& source, message_header& header, std::size_t bins,
                                  const grid_options& how, std::vector<float>& ranges_m,
@@ -98,8 +100,8 @@ struct laser_scan_numbers {
                                                         std::size_t bins) noexcept;
 
 /// Appends a sensor_msgs/msg/LaserScan to `out`. range_min is the shortest range of the model (0.1 m
-/// for a G4; ranges below are not reliable), range_max the longest one that its samples can contain
-/// (16.38375 m for a G4), angle_increment 2 pi / bins.
+/// for a G4; ranges below are not reliable), range_max header.longest_mm (16 m for a G4; a sample may contain
+/// more), angle_increment 2 pi / bins.
 /// +infinity is not free space: a target nearer than the shortest range of the lidar
 /// (0.28 m at 9 kHz, more than range_min) may give no return; see too_near.hpp and grid_options. Allocates beyond the capacity of `out`.
 ///

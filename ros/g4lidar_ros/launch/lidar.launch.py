@@ -2,7 +2,7 @@
 """One lidar as a lifecycle node, which configures and activates itself; with autostart:=false a manager does it.
 
     ros2 launch g4lidar_ros lidar.launch.py
-    ros2 launch g4lidar_ros lidar.launch.py sim:=true rviz:=true
+    ros2 launch g4lidar_ros lidar.launch.py sim:=true
     ros2 launch g4lidar_ros lidar.launch.py source:=/dev/ttyUSB0 frame_id:=front_laser
     ros2 launch g4lidar_ros lidar.launch.py container:=/my_container
 
@@ -12,10 +12,9 @@ A launch file that includes it twice puts each into a GroupAction, as arguments 
 import os
 import re
 
-from ament_index_python.packages import get_package_share_directory
+from ament_index_python.packages import PackageNotFoundError, get_package_share_directory
 from launch import LaunchDescription
 from launch.actions import DeclareLaunchArgument, OpaqueFunction
-from launch.conditions import IfCondition
 from launch.substitutions import LaunchConfiguration
 from launch_ros.actions import LoadComposableNodes, Node
 from launch_ros.descriptions import ComposableNode
@@ -60,6 +59,17 @@ def lidar_actions(context):
     return [LoadComposableNodes(target_container=container, composable_node_descriptions=[component])]
 
 
+def rviz_actions(context):
+    if not is_true("rviz", context):
+        return []
+    try:
+        get_package_share_directory("rviz2")
+    except PackageNotFoundError:
+        install = f"sudo apt-get install ros-{os.environ.get('ROS_DISTRO', '$ROS_DISTRO')}-rviz2"
+        raise RuntimeError(f"rviz:=true needs the package rviz2, which is not installed: {install}") from None
+    return [Node(package="rviz2", executable="rviz2", arguments=["-d", os.path.join(SHARE, "rviz", "lidar.rviz")])]
+
+
 def generate_launch_description():
     parameters = [DeclareLaunchArgument(name, default_value="true" if name == "autostart" else "", description=words)
                   for name, words in PARAMETERS.items()]
@@ -74,7 +84,6 @@ def generate_launch_description():
         DeclareLaunchArgument("params_file", default_value=DEFAULTS,
                               description="file of parameters; arguments have precedence"),
         *parameters,
+        OpaqueFunction(function=rviz_actions),
         OpaqueFunction(function=lidar_actions),
-        Node(package="rviz2", executable="rviz2", arguments=["-d", os.path.join(SHARE, "rviz", "lidar.rviz")],
-             condition=IfCondition(LaunchConfiguration("rviz"))),
     ])

@@ -73,6 +73,11 @@ lidar_session::lidar_session(rclcpp_lifecycle::LifecycleNode& node, lidar_topics
   if (const std::string wrong = parameters_.change(nullptr, options.filters); !wrong.empty())
     throw std::invalid_argument(wrong);
   wanted_.insert(options.settings.begin(), options.settings.end());
+  if (options.order == g4lidar::scan_order::time) {
+    RCLCPP_WARN(
+        node.get_logger(),
+        "order: time is not for slam_toolbox, which would make a wrong map; it needs angle");
+  }
   // The motor rests at once, also in a container whose other components take their time.
   before_shutdown_ =
       node.get_node_base_interface()->get_context()->add_pre_shutdown_callback([this] {

@@ -223,16 +223,16 @@ class recorder {
 
 option_rows message_rows(g4lidar::recording_options& into) {
   return joined(
-      option_rows{
-          value_row("--points", "", "Write each revolution as a PointCloud2 message, too",
-                    into.points_topic, [](const std::string&) { return "/points"; }),
-          choice_row(
-              "--order", "Order of the ranges of a LaserScan; time: z is down (angle)", into.order,
-              choices<scan_order>{{"angle", scan_order::angle}, {"time", scan_order::time}})},
+      option_rows{value_row("--points", "", "Write each revolution as a PointCloud2 message, too",
+                            into.points_topic, [](const std::string&) { return "/points"; }),
+                  order_row(into.order)},
       near_row(into.near), grid_rows(into.grid));
 }
 
-recorded_result record(const recording_job& job) { return recorder(job).run(); }
+recorded_result record(const recording_job& job) {
+  note_order(job.made.order);
+  return recorder(job).run();
+}
 
 void report_recorded(const recorded_result& result, const std::string& path) {
   const recording_counts& file = result.file;

@@ -34,7 +34,7 @@ on.
 
 --points adds each revolution as sensor_msgs/msg/PointCloud2 on /points: x y z, t in ns since the
 stamp, range, angle. --order time writes the ranges of a LaserScan as they were measured, with
-their real time_increment, in a frame with z down. --odometry FILE adds nav_msgs/msg/Odometry on
+their real time_increment, in a frame with z down, but not for slam_toolbox. --odometry FILE adds nav_msgs/msg/Odometry on
 /odom: lines as sim --odometry writes them, with times of the source's clock (of raw bytes in a
 file: since its first byte); a simulated robot adds its own without errors. --mount adds /tf_static from base_link.)";
 
@@ -127,23 +127,22 @@ verb make_record_verb() {
       text_row("OUT", "", "The recording, as with -o", options->job.path, completion::output);
   source.take =
       out.take = [words = &options->words](const std::string& word) { words->push_back(word); };
-  return {
-      .name = "record",
-      .summary = "Record all bytes both ways, and the scans",
-      .arguments = {source, out},
-      .options = joined(file_rows(*options), scan_rows(*options), ending_rows(common),
-                        device_rows(common)),
-      .details = record_details,
-      .examples = {{"g4-dump record walk.mcap", "Record the only lidar until ^C"},
-                   {"g4-dump record /dev/ttyUSB0 -o walk.mcap -d 10min",
-                    "Record one port for ten minutes"},
-                   {"g4-dump record -o day.mcap --compress --rotate-time 1h --on-loss wait",
-                    "Record for days, a file each hour, also after unplugs"},
-                   {"g4-dump record 'sim:?seed=7' -n 20 room.mcap",
-                    "Record 20 scans of a simulated G4"},
-                   {"g4-dump record walk.mcap slam.mcap --points --order time --mount 0.1,0,180",
-                    "Add to a recording what SLAM programs read"}},
-      .run = [options] { return run(*options); }};
+  return {.name = "record",
+          .summary = "Record all bytes both ways, and the scans",
+          .arguments = {source, out},
+          .options = joined(file_rows(*options), scan_rows(*options), ending_rows(common),
+                            device_rows(common)),
+          .details = record_details,
+          .examples = {{"g4-dump record walk.mcap", "Record the only lidar until ^C"},
+                       {"g4-dump record /dev/ttyUSB0 -o walk.mcap -d 10min",
+                        "Record one port for ten minutes"},
+                       {"g4-dump record -o day.mcap --compress --rotate-time 1h --on-loss wait",
+                        "Record for days, a file each hour, also after unplugs"},
+                       {"g4-dump record 'sim:?seed=7' -n 20 room.mcap",
+                        "Record 20 scans of a simulated G4"},
+                       {"g4-dump record walk.mcap slam.mcap --points --mount 0.1,0,180",
+                        "Add to a recording what SLAM programs read"}},
+          .run = [options] { return run(*options); }};
 }
 
 }  // namespace g4_tool

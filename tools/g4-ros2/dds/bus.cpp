@@ -24,7 +24,8 @@ constexpr std::size_t most_lines = 100;
 struct domain_log {
   std::mutex mutex;
   std::set<std::string> lines;  // that were logged
-  std::string refusal;          // of the configuration, the first one
+  bool is_creating = false;     // a domain: its errors are not logged
+  std::string trouble;          // the first one of them
   std::uint64_t undecoded = 0;  // requests to services
 };
 
@@ -33,14 +34,13 @@ domain_log& the_log() {
   return log;
 }
 
-/// Why a configuration is refused; empty if the line has another subject.
-std::string_view refusal_in(std::string_view line) {
+/// The reason in a line about a configuration, without its place and a full stop; else the line.
+std::string_view reason_in(std::string_view line) {
+  while (line.ends_with('.')) line.remove_suffix(1);
   constexpr std::string_view of_contents = "config: ";
-  if (line.starts_with(of_contents)) {
-    line.remove_prefix(of_contents.size());
-    return line.substr(0, line.find(" (CYCLONEDDS_URI"));
-  }
-  return line.starts_with("can't open configuration file") ? line : std::string_view();
+  if (!line.starts_with(of_contents)) return line;
+  line.remove_prefix(of_contents.size());
+  return line.substr(0, line.find(" (CYCLONEDDS_URI"));
 }
 
 /// Logs each different line once, because failed attempts are repeated.
@@ -50,8 +50,8 @@ void log_line(void*, const dds_log_data_t* line) {
   const bool is_bad = (line->priority & (DDS_LC_FATAL | DDS_LC_ERROR)) != 0;
   domain_log& log = the_log();
   const std::lock_guard lock(log.mutex);
-  if (const std::string_view why = refusal_in(text); is_bad && !why.empty()) {
-    if (log.refusal.empty()) log.refusal = why;
+  if (is_bad && log.is_creating) {
+    if (log.trouble.empty()) log.trouble = reason_in(text);
     return;
   }
   if (text.find("deserialization rq/") != std::string_view::npos) ++log.undecoded;
@@ -61,11 +61,18 @@ void log_line(void*, const dds_log_data_t* line) {
   is_bad ? logger::info(words) : logger::verbose(words);
 }
 
-/// Why the last configuration was refused; empty if it was not.
-std::string take_refusal() {
+/// A domain with this configuration; `trouble`: why there is none.
+entity created(std::uint32_t number, const std::string& configuration, std::string& trouble) {
   domain_log& log = the_log();
-  const std::lock_guard lock(log.mutex);
-  return std::exchange(log.refusal, {});
+  const auto set = [&log](bool is_creating) {
+    const std::lock_guard lock(log.mutex);
+    log.is_creating = is_creating;
+    return std::exchange(log.trouble, {});
+  };
+  set(true);
+  entity made(dds_create_domain(number, configuration.c_str()));
+  trouble = set(false);
+  return made;
 }
 
 /// Whether enough descriptors for a domain are left. Cyclone DDS crashes without them.
@@ -141,8 +148,12 @@ void bus::open() {
     here.peers.emplace_back("localhost");
   }
   const bool is_possible = has_descriptors();
-  if (is_possible)
-    domain_ = entity(dds_create_domain(here.domain, configuration(here, !on_.empty()).c_str()));
+  std::string trouble;
+  const auto create = [&] {
+    return created(here.domain, configuration(here, !on_.empty()), trouble);
+  };
+  if (is_possible) domain_ = create();
+  if (is_on_loopback(here)) keep_multicast_here();  // before a participant announces itself
   // Without an enclave ROS 2 does not list the nodes of a participant.
   constexpr std::string_view user_data = "enclave=/;";
   const qos with_enclave(dds_create_qos(), dds_delete_qos);
@@ -154,7 +165,7 @@ void bus::open() {
   participant_ = entity(made);
   if (!participant_) {
     domain_ = {};
-    const std::string refusal = take_refusal();
+    const std::string why = trouble;
     std::string hint;
     if (!is_possible) {
       hint = "Too many files are open. Raise the limit: ulimit -n 1024";
@@ -162,13 +173,13 @@ void bus::open() {
         throw failure(exit_code::bad_file,
                       fmt::format("cannot join the ROS 2 domain {}. {}.", wanted_.domain, hint));
       }
-    } else if (!refusal.empty()) {
-      hint = "CYCLONEDDS_URI: " + refusal + ". Correct that variable, or unset it";
-      if (is_new_) throw bad_value(hint);
+    } else if (is_new_ && !std::exchange(here.more, {}).empty() && create()) {
+      throw bad_value("CYCLONEDDS_URI: " + why + ". Correct that variable, or unset it");
     } else if (!wanted_.interface.empty()) {
       hint = "Is the interface " + wanted_.interface + " there?";
     }
     is_new_ = false;
+    if (hint.empty()) hint = why;
     std::string problem = fmt::format("cannot join the ROS 2 domain {} now; trying again{}{}\n",
                                       wanted_.domain, hint.empty() ? "" : ". ", hint);
     if (problem != std::exchange(problem_, problem)) logger::info(problem);

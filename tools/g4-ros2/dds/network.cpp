@@ -93,7 +93,7 @@ std::string interfaces_of(const network& wanted, bool is_connected) {
     const bool is_address = wanted.interface.find_first_of(".:") != std::string::npos;
     made = fmt::format(R"(<NetworkInterface {}="{}"/>)", is_address ? "address" : "name",
                        checked_name(wanted.interface));
-  } else if (wanted.range == discovery_range::localhost) {
+  } else if (is_on_loopback(wanted)) {
     made = R"(<NetworkInterface address="127.0.0.1"/>)";
     if (is_connected) made += R"(<NetworkInterface autodetermine="true"/>)";
   }
@@ -150,6 +150,11 @@ bool names_interfaces(const std::string& uri) {
   return found;
 }
 
+bool is_on_loopback(const network& wanted) {
+  return wanted.range == discovery_range::localhost && wanted.interface.empty() &&
+         !names_interfaces(wanted.more);
+}
+
 std::string configuration(const network& wanted, bool is_connected) {
   std::string general = interfaces_of(wanted, is_connected);
   std::string discovery;
@@ -163,6 +168,8 @@ std::string configuration(const network& wanted, bool is_connected) {
   } else if (wanted.range != discovery_range::system_default) {
     std::vector<std::string> peers = wanted.peers;
     if (is_local) peers.emplace_back("localhost");
+    // Where loopback has multicast, Humble with Cyclone DDS listens to nothing else. See keep_multicast_here().
+    if (is_on_loopback(wanted)) peers.emplace_back("239.255.0.1");
     discovery = fmt::format(
         "<ParticipantIndex>auto</ParticipantIndex>"
         "<MaxAutoParticipantIndex>{}</MaxAutoParticipantIndex>",
@@ -186,6 +193,14 @@ std::string configuration(const network& wanted, bool is_connected) {
       "<Internal><HeartbeatInterval>10ms</HeartbeatInterval>"
       "<MultipleReceiveThreads>false</MultipleReceiveThreads></Internal>";
   return made + "</Domain></CycloneDDS>" + (wanted.more.empty() ? "" : "," + wanted.more);
+}
+
+void keep_multicast_here() noexcept {
+  constexpr int all = 65536;
+  const in_addr loopback{htonl(INADDR_LOOPBACK)};
+  for (int fd = 0; fd < all; ++fd) {  // of what is no such socket it fails
+    static_cast<void>(::setsockopt(fd, IPPROTO_IP, IP_MULTICAST_IF, &loopback, sizeof loopback));
+  }
 }
 
 std::vector<std::string> addresses(std::string_view interface) {

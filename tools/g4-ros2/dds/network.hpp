@@ -39,6 +39,12 @@ using environment = std::function<std::string(const char*)>;
 /// Whether CYCLONEDDS_URI names network interfaces itself, which then are the only ones.
 [[nodiscard]] bool names_interfaces(const std::string& uri);
 
+/// Whether it is on loopback and the first network: with LOCALHOST, unless the user names an interface.
+[[nodiscard]] bool is_on_loopback(const network& wanted);
+/// The multicast packets of all sockets of this process go to loopback. Cyclone DDS would send those to a peer with a
+/// multicast address to each interface. (With a TTL of 0 they leave the machine where nobody there has joined the group.)
+void keep_multicast_here() noexcept;
+
 /// The configuration for Cyclone DDS. `is_connected`: there is an interface that is not loopback. Throws bad_value for an
 /// invalid interface or peer.
 [[nodiscard]] std::string configuration(const network& wanted, bool is_connected);

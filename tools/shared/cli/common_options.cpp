@@ -149,6 +149,21 @@ option_rows grid_rows(grid_options& into) {
                   choices<bool>{{"nan", false}, {"minus-inf", true}})});
 }
 
+option_row order_row(scan_order& into) {
+  return choice_row("--order",
+                    "Order of the ranges of a LaserScan; time: z is down, not for slam_toolbox "
+                    "(angle)",
+                    into,
+                    choices<scan_order>{{"angle", scan_order::angle}, {"time", scan_order::time}});
+}
+
+void note_order(scan_order chosen) {
+  if (chosen != scan_order::time) return;
+  logger::info(
+      "--order time is not for slam_toolbox, which would make a wrong map: it takes the angles of "
+      "all scans as those of the first one, and as symmetrical about 0\n");
+}
+
 option_rows filter_rows(common_options& options) {
   const auto take = [&options](std::string_view name, const std::string& word) {
     filter_settings now{.filter = options.filter, .marks = options.marks};

@@ -106,6 +106,10 @@ using shared_options = std::shared_ptr<common_options>;
 [[nodiscard]] option_row near_row(std::optional<near_limits>& into);
 /// --no-return, --near-as.
 [[nodiscard]] option_rows grid_rows(grid_options& into);
+/// --order.
+[[nodiscard]] option_row order_row(scan_order& into);
+/// Logs for which program the order of time is not.
+void note_order(scan_order chosen);
 /// "X,Y,DEG" or "X,Y,DEG,down" in metres and degrees. Throws bad_value.
 [[nodiscard]] mounting mounting_of(const std::string& text);
 /// --mount.

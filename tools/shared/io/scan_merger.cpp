@@ -50,7 +50,6 @@ void scan_merger::add(std::size_t index, g4lidar::scan_shaper& scan, const scan_
                    .kept = {.points = {}, .model = &which},
                    .kept_of_each = {},
                    .when = {here.end_ns, when.duration_ns, when.ahead_ns},
-                   .longest_mm = longest_mm(),
                    .moved = motion_of_robot(here, scan, when)};
   const g4lidar::merged all = merged_points(&part::for_grid, here.end_ns, made.moved, for_grid_);
   ++scans_;
@@ -69,14 +68,6 @@ void scan_merger::add(std::size_t index, g4lidar::scan_shaper& scan, const scan_
   take(made);
 }
 
-float scan_merger::longest_mm() const {
-  float longest = 0.0F;
-  for (const part& each : parts_) {
-    longest = std::max(longest, g4lidar::longest_range_mm(each.model->samples.layout));
-  }
-  return longest;
-}
-
 g4lidar::model scan_merger::merged_model() const {
   const auto bits_of = [](const part& each) {
     return g4lidar::intensity_bits(each.model->samples.layout);
@@ -88,6 +79,7 @@ g4lidar::model scan_merger::merged_model() const {
                })->model->rates;
   for (const part& each : parts_) {
     made.range.min_mm = std::min(made.range.min_mm, each.model->range.min_mm);
+    made.range.max_mm = std::max(made.range.max_mm, each.model->range.max_mm);
   }
   return made;
 }

@@ -38,15 +38,14 @@ struct robot_motion {
 };
 
 /// One scan of all lidars, at the time `when.first_ns`. Points that are deskewed have this time; all others have their own,
-/// and are flagged not_deskewed if deskewing was wanted. Its model has the turn of a G4, the shortest range of all, and
-/// intensities if one of them has. Valid during a call.
+/// and are flagged not_deskewed if deskewing was wanted. Its model has the turn of a G4, the shortest and the longest range
+/// of all, and intensities if one of them has. Valid during a call.
 struct merged_scan {
   g4lidar::scan for_grid;  ///< See scan_shaper::for_grid().
   g4lidar::scan kept;      ///< See scan_shaper::kept(); empty if nobody wants it.
   std::span<const std::size_t>
       kept_of_each;  ///< So many points of `kept` are of each lidar, in order.
   scan_times when;
-  float longest_mm = 0.0F;  ///< The longest range that a sample of one of them can contain.
   robot_motion moved;
 };
 
@@ -86,7 +85,6 @@ class scan_merger {
                                              const scan_times& when);
   /// What measures merged scans: see merged_scan.
   [[nodiscard]] g4lidar::model merged_model() const;
-  [[nodiscard]] float longest_mm() const;
   /// `which` of all parts, as one scan at `reference_ns`.
   [[nodiscard]] g4lidar::merged merged_points(std::vector<g4lidar::point> part::* which,
                                               std::int64_t reference_ns, const robot_motion& moved,
