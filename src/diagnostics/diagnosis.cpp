@@ -161,6 +161,11 @@ constexpr std::array rows{
         "Set a lower sample rate; reduce the load of this computer.", {stalls}),
     row("line_noise", fail, "Bytes arrive that belong to no packet, and they show no pattern.",
         line_advice, {wrong_baud_rate, interference}),
+    row("no_returns", warn,
+        "Nothing came back in any direction: the window is covered, the laser is dead, or nothing "
+        "is within the range of the lidar. The laser of an X4 lasts about 1,500 hours.",
+        "Hold a white sheet 30 cm in front of the window. If still nothing comes back, remove "
+        "covers and dirt from the window; after that the lidar needs repair."),
     row("usb_latency", warn,
         "Bytes are held back and arrive in groups, most often by the latency timer of a USB "
         "bridge.",
@@ -180,8 +185,8 @@ diagnosis_info describe(diagnosis what) noexcept {
 
 std::string_view name_of(diagnostic_stage where) noexcept {
   constexpr std::array<std::string_view, diagnostic_stage_count> names{
-      "port",   "permission", "holder", "baud_rate", "answers", "identity",
-      "health", "motor",      "stream", "rate",      "loss",    "usb_latency"};
+      "port",  "permission", "holder", "baud_rate", "answers", "identity",   "health",
+      "motor", "stream",     "rate",   "loss",      "returns", "usb_latency"};
   return names[static_cast<std::size_t>(where)];
 }
 

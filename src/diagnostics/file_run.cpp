@@ -202,6 +202,7 @@ class file_run {
     log_.report(std::move(stream));
     report_rate(log_, measured_, device_, model_);
     report_loss(log_, measured_, model_);
+    report_returns(log_, measured_, model_, log_.options().directions);
     log_.skip(diagnostic_stage::usb_latency,
               "The reader of a file or a recording groups bytes itself.");
   }

@@ -120,6 +120,8 @@ std::unique_ptr<connector> running_diagnosis::observe(std::unique_ptr<connector>
 
 void running_diagnosis::add(const lidar_event& what) { state_->add(what); }
 void running_diagnosis::add(const error& why) { state_->add(why); }
-std::vector<stage_report> running_diagnosis::stages() const { return state_->stages(); }
+std::vector<stage_report> running_diagnosis::stages(const point_filter& directions) const {
+  return state_->stages(directions);
+}
 
 }  // namespace g4lidar

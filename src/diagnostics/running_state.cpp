@@ -109,7 +109,7 @@ running_state::copy running_state::take_copy() const {
   return made;
 }
 
-std::vector<stage_report> running_state::stages() const {
+std::vector<stage_report> running_state::stages(const point_filter& directions) const {
   copy of = take_copy();
   const diagnostic_options none;
   stage_log log(none);
@@ -150,6 +150,7 @@ std::vector<stage_report> running_state::stages() const {
       report_rate(log, of.measured, of.known, *of.which);
     }
     report_loss(log, of.measured, *of.which);
+    report_returns(log, of.measured, *of.which, directions);
     report_latency(log, of.measured, of.baud, of.name);
     return std::move(log.stages());
   }
@@ -157,7 +158,7 @@ std::vector<stage_report> running_state::stages() const {
       of.phase == running_scan::phase::rests ? "No scan is running." : "The head is speeding up.";
   for (const auto where :
        {diagnostic_stage::motor, diagnostic_stage::stream, diagnostic_stage::rate,
-        diagnostic_stage::loss, diagnostic_stage::usb_latency}) {
+        diagnostic_stage::loss, diagnostic_stage::returns, diagnostic_stage::usb_latency}) {
     log.skip(where, why);
     add_found();
   }

@@ -93,7 +93,7 @@ class running_state {
   void add(const lidar_event& what);
   void add(const error& why);
 
-  [[nodiscard]] std::vector<stage_report> stages() const;
+  [[nodiscard]] std::vector<stage_report> stages(const point_filter& directions) const;
 
  private:
   /// What stages() needs, copied while no byte is processed.

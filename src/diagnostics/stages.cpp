@@ -27,6 +27,8 @@ double held_back_limit_of_ms(std::uint32_t baud) noexcept {
   constexpr double usual_baud = 230'400.0;
   return held_back_limit_ms * std::max(1.0, usual_baud / baud);
 }
+/// Narrower sectors without a return are not reported.
+constexpr int least_blind_deg = 30;
 /// The amount of damage up to which there is only a warning.
 constexpr std::uint64_t few_events = 2;
 constexpr double few_lost = 0.002;
@@ -102,7 +104,7 @@ double nominal_rate_hz(const device_snapshot& known, double measured_hz, const m
 }
 
 /// The last diagnosis of each stage, in the order of the enumeration. An unplug belongs to the port.
-constexpr std::array<std::pair<diagnosis, diagnostic_stage>, 13> last_of_stages{
+constexpr std::array<std::pair<diagnosis, diagnostic_stage>, 14> last_of_stages{
     {{diagnosis::bad_file, diagnostic_stage::port},
      {diagnosis::permission, diagnostic_stage::permission},
      {diagnosis::interference, diagnostic_stage::holder},
@@ -115,6 +117,7 @@ constexpr std::array<std::pair<diagnosis, diagnostic_stage>, 13> last_of_stages{
      {diagnosis::host_busy, diagnostic_stage::stream},
      {diagnosis::sample_rate_off, diagnostic_stage::rate},
      {diagnosis::line_noise, diagnostic_stage::loss},
+     {diagnosis::no_returns, diagnostic_stage::returns},
      {diagnosis::usb_latency, diagnostic_stage::usb_latency}}};
 
 }  // namespace
@@ -284,6 +287,45 @@ void report_loss(stage_log& log, const stream_statistics& measured, const model&
     if (lost < few_lost) loss.outcome = std::min(loss.outcome, stage_verdict::warn);
   }
   log.report(std::move(loss));
+}
+
+void report_returns(stage_log& log, const stream_statistics& measured, const model& wanted,
+                    const point_filter& directions) {
+  const return_map& seen = measured.tally().returns;
+  if (!seen.is_round()) {
+    return log.skip(diagnostic_stage::returns, "The lidar has not looked in each direction.");
+  }
+  stage_report report{.stage = diagnostic_stage::returns};
+  report.add("samples", seen.samples());
+  report.add("returns", seen.returns());
+  if (seen.returns() == 0) {
+    report.find(diagnosis::no_returns);
+    return log.report(std::move(report));
+  }
+  point_filter wished = directions;
+  wished.turn_deg = wanted.turn_deg;
+  const auto arcs = seen.without_return(least_blind_deg, [&wished](float middle_deg) {
+    return wished.has_direction({.angle_deg = middle_deg});
+  });
+  for (const direction_arc& arc : arcs) {
+    const auto in_words = [&](int degree) {
+      const auto turned = static_cast<float>(degree % 360);
+      return std::to_string(std::lround(bearing_deg(turned, wished.in, wanted.turn_deg)));
+    };
+    std::string from = in_words(arc.from_deg);
+    std::string to = in_words(arc.from_deg + arc.width_deg);
+    if (wished.in == frame::robot) std::swap(from, to);
+    report.add("nothing_from_deg", from);
+    report.add("nothing_to_deg", to);
+    report.remark +=
+        (report.remark.empty() ? "Nothing returned in " : "; in ") + from + " to " + to;
+  }
+  if (!arcs.empty()) {
+    report.remark +=
+        " degrees. If a part of the robot is there, leave the directions out with the option "
+        "ignore.";
+  }
+  log.report(std::move(report));
 }
 
 bool find_other_layout(stage_report& report, const layout_recogniser& seen, const model& wanted) {

@@ -13,6 +13,7 @@
 #include "g4lidar/core/model.hpp"
 #include "g4lidar/core/response.hpp"
 #include "g4lidar/diagnostics/diagnostic_run.hpp"
+#include "g4lidar/filter.hpp"
 #include "reply_statistics.hpp"
 #include "stream_statistics.hpp"
 
@@ -75,6 +76,10 @@ void judge_motor(stage_report& motor, const stream_statistics& measured);
 void report_rate(stage_log& log, const stream_statistics& measured, const device_snapshot& known,
                  const model& wanted);
 void report_loss(stage_log& log, const stream_statistics& measured, const model& wanted);
+/// returns: whether something came back, and the sectors from which nothing did, but for directions that the user
+/// leaves out.
+void report_returns(stage_log& log, const stream_statistics& measured, const model& wanted,
+                    const point_filter& directions);
 /// `baud` 0: bytes take no time. `name` is that of the transport: not all have a USB bridge.
 void report_latency(stage_log& log, const stream_statistics& measured, std::uint32_t baud,
                     std::string_view name);

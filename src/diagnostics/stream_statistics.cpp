@@ -159,6 +159,7 @@ void stream_statistics::take_packet(packet_view packet, std::int64_t arrival_ns)
     ++tally_.jerks;
     return part();
   }
+  tally_.returns.take(packet, which_->samples);
   const place now{arrival_ns, packet.last_angle_64ths() / 64.0, packet.first_angle_64ths() / 64.0,
                   samples};
   if (last_) {

@@ -36,6 +36,7 @@ void stream_tally::add(const stream_tally& other) noexcept {
   damage.add(other.damage);
   arrivals.add(other.arrivals);
   pace.add(other.pace);
+  returns.add(other.returns);
   samples += other.samples;
   lost += other.lost;
   jerks += other.jerks;

@@ -11,6 +11,7 @@
 #include "g4lidar/core/model.hpp"
 #include "g4lidar/core/stream_counter.hpp"
 #include "link_monitor.hpp"
+#include "survey/return_map.hpp"
 
 namespace g4lidar {
 
@@ -105,6 +106,7 @@ struct stream_tally {
   damage_counts damage{};
   arrival_statistics arrivals{};
   sample_pace pace{};
+  return_map returns{};
   std::uint64_t samples = 0;
   std::uint64_t lost = 0;
   std::uint64_t jerks = 0;  // packets in which the head moves back, or much less far than in others

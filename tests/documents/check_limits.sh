@@ -24,7 +24,7 @@ refuse() {
 # ---- lines, sentences, links, promises -----------------------------------------------------------
 
 shopt -s nullglob
-for page in README.md SUPPORT.md CONTRIBUTING.md docs/*.md docs/guide/*.md examples/*/README.md; do
+for page in README.md SUPPORT.md CONTRIBUTING.md docs/*.md docs/guide/*.md docs/lidars/*.md examples/*/README.md; do
   most=300
   if [[ $page == README.md ]]; then most=150; fi
   lines=$(wc -l <"$page")

@@ -11,7 +11,7 @@ here=tests/documents
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 shopt -s nullglob
-documents=(./*.md docs/*.md docs/guide/*.md docs/design/*.md)
+documents=(./*.md docs/*.md docs/guide/*.md docs/lidars/*.md docs/design/*.md)
 missing=0
 
 # A program of a document is the source, but for the SPDX line and the sentence below it.

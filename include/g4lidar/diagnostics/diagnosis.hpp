@@ -32,6 +32,7 @@ enum class diagnostic_stage : std::uint8_t {
   stream,
   rate,
   loss,
+  returns,
   usb_latency,
 };
 /// The number of stages.
@@ -88,6 +89,7 @@ enum class diagnosis : std::uint8_t {
   packets_truncated,
   packets_lost,
   line_noise,
+  no_returns,
   usb_latency,
 };
 /// The number of diagnoses.

@@ -12,6 +12,7 @@
 #include "g4lidar/core/model.hpp"
 #include "g4lidar/detail/api.hpp"
 #include "g4lidar/diagnostics/diagnosis.hpp"
+#include "g4lidar/filter.hpp"
 #include "g4lidar/transport/connector.hpp"
 #include "g4lidar/transport/transport.hpp"
 
@@ -36,6 +37,9 @@ struct diagnostic_options {
   const g4lidar::model* model = nullptr;
   /// How long to measure the running scan; a file is always read completely.
   std::chrono::nanoseconds measuring_time = std::chrono::seconds(5);
+  /// The directions that the user wants: its field_of_view and ignored_sectors, in its frame, for the model that is
+  /// found. Of what lies outside of them the stage returns reports nothing. The sectors must outlive the run.
+  point_filter directions{};
   /// Called about 20 times a second; returning true ends the run. The lidar is stopped then, too.
   std::function<bool()> is_cancelled{};
   /// Called with each stage when it ends, also with stages that are skipped.

@@ -10,6 +10,7 @@
 #include "g4lidar/detail/api.hpp"
 #include "g4lidar/diagnostics/diagnosis.hpp"
 #include "g4lidar/error.hpp"
+#include "g4lidar/filter.hpp"
 #include "g4lidar/lidar.hpp"
 #include "g4lidar/settings.hpp"
 #include "g4lidar/transport/connector.hpp"
@@ -55,10 +56,10 @@ class G4LIDAR_API running_diagnosis {
   /// that are not fatal change nothing.
   void add(const error& why);
 
-  /// The stages port, health, motor, stream, rate, loss and usb_latency, in this order, and permission,
+  /// The stages port, health, motor, stream, rate, loss, returns and usb_latency, in this order, and permission,
   /// holder, baud_rate, answers and identity if they have a diagnosis. `skipped` where nothing is known,
-  /// with the reason as remark. *Any thread.* Allocates.
-  [[nodiscard]] std::vector<stage_report> stages() const;
+  /// with the reason as remark. `directions`: as diagnostic_options::directions. *Any thread.* Allocates.
+  [[nodiscard]] std::vector<stage_report> stages(const point_filter& directions = {}) const;
 
  private:
   class state;

@@ -155,6 +155,7 @@ int examine(const doctor_options& options) {
   how.model = kind != source_kind::simulated ? model_of(options, &seen) : options.expected.model;
   if (seen) report_model(*seen->which, seen->is_usual());
   if (options.duration.count() > 0) how.measuring_time = options.duration;
+  how.directions = directions_of(options);
   how.is_cancelled = [] { return interrupt() != 0; };
   std::optional<problem_report> report;
   if (!options.report.empty()) report.emplace(options, options.report);
@@ -187,7 +188,7 @@ int examine(const doctor_options& options) {
 
 constexpr const char* doctor_details =
     R"(It examines port, permission, holder, baud rate, answers, identity, health, motor, stream, rate,
-loss and USB latency. It reports for each what was measured; where something is wrong also the
+loss, returns and USB latency. It reports for each what was measured; where something is wrong also the
 likely cause and what to try. For a healthy lidar it takes about 8 seconds. No setting is changed,
 and the motor is stopped at the end, if it can be. The model and the baud rate are found, or are
 those of --model and --baud: then another one is reported. Models that answer nothing are listened
@@ -209,26 +210,32 @@ verb make_doctor_verb() {
   time.help = "Listen to the scan for so long (5s)";
   option_row json = json_row(*options);
   json.help = "A JSON object for each stage, a line each";
-  return {.name = "doctor",
-          .summary = "What is wrong with a lidar, its port or a file, and what to try",
-          .arguments = {source_argument(*options)},
-          .options = joined(
-              output_rows(*options), json, time, baud_row(*options), model_row(*options),
-              in_group("Report of a problem",
-                       {text_row("--report", "FILE",
-                                 "Write a text, and a recording beside it, to attach to a report",
-                                 options->report, completion::output)})),
-          .details = doctor_details,
-          .examples = {{"g4-dump doctor", "Examine the only lidar"},
-                       {"g4-dump doctor --json -d 30s /dev/ttyUSB0",
-                        "Listen to one port for 30 s, as JSON"},
-                       {"g4-dump doctor walk.mcap", "Examine a recording"},
-                       {"g4-dump doctor --report report.txt",
-                        "Write report.txt and report.mcap, to attach to a report of a problem"},
-                       {"g4-dump doctor 'sim:?fault=flip'", "A simulated G4 on a bad cable"},
-                       {"g4-dump doctor 'sim:?model=x4&motor_has_power=false'",
-                        "A simulated X4 without its second plug"}},
-          .run = [options] { return examine(*options); }};
+  return {
+      .name = "doctor",
+      .summary = "What is wrong with a lidar, its port or a file, and what to try",
+      .arguments = {source_argument(*options)},
+      .options = joined(
+          output_rows(*options), json, time, baud_row(*options), model_row(*options),
+          direction_rows(*options),
+          in_group("Filters",
+                   {frame_row("--frame",
+                              "Of --fov and --ignore; vendor: clockwise from the cable (vendor)",
+                              options->frame)}),
+          in_group("Report of a problem",
+                   {text_row("--report", "FILE",
+                             "Write a text, and a recording beside it, to attach to a report",
+                             options->report, completion::output)})),
+      .details = doctor_details,
+      .examples = {{"g4-dump doctor", "Examine the only lidar"},
+                   {"g4-dump doctor --json -d 30s /dev/ttyUSB0",
+                    "Listen to one port for 30 s, as JSON"},
+                   {"g4-dump doctor walk.mcap", "Examine a recording"},
+                   {"g4-dump doctor --report report.txt",
+                    "Write report.txt and report.mcap, to attach to a report of a problem"},
+                   {"g4-dump doctor 'sim:?fault=flip'", "A simulated G4 on a bad cable"},
+                   {"g4-dump doctor 'sim:?model=x4&motor_has_power=false'",
+                    "A simulated X4 without its second plug"}},
+      .run = [options] { return examine(*options); }};
 }
 
 }  // namespace g4_tool

@@ -125,6 +125,16 @@ option_row limits_row(const char* names, const char* help,
   return row;
 }
 
+/// Sets the filter of this name by a word.
+std::function<void(const std::string&)> taken(common_options& options, std::string_view name) {
+  return [&options, name](const std::string& word) {
+    filter_settings now{.filter = options.filter, .marks = options.marks};
+    take_filter(now, name, word);
+    options.filter = now.filter;
+    options.marks = now.marks;
+  };
+}
+
 }  // namespace
 
 option_row near_row(std::optional<near_limits>& into) {
@@ -164,16 +174,7 @@ void note_order(scan_order chosen) {
       "all scans as those of the first one, and as symmetrical about 0\n");
 }
 
-option_rows filter_rows(common_options& options) {
-  const auto take = [&options](std::string_view name, const std::string& word) {
-    filter_settings now{.filter = options.filter, .marks = options.marks};
-    take_filter(now, name, word);
-    options.filter = now.filter;
-    options.marks = now.marks;
-  };
-  const auto taken = [take](std::string_view name) {
-    return [take, name](const std::string& word) { take(name, word); };
-  };
+option_rows direction_rows(common_options& options) {
   option_row ignore = filter_row(
       "--ignore", "FROM:TO", "Leave out these directions: 30:40; may be repeated",
       [&options](const std::string& word) {
@@ -182,17 +183,31 @@ option_rows filter_rows(common_options& options) {
         options.ignored.insert(options.ignored.end(), more.ignored.begin(), more.ignored.end());
       });
   ignore.repeatable = true;
+  return in_group("Filters", {filter_row("--fov", "FROM:TO",
+                                         "Keep these directions, in degrees of the frame: -90:90",
+                                         taken(options, "fov")),
+                              ignore});
+}
+
+point_filter directions_of(const common_options& options) {
+  point_filter made = options.filter;
+  made.in = options.frame;
+  made.ignored_sectors = options.ignored;
+  return made;
+}
+
+option_rows filter_rows(common_options& options) {
   return in_group(
       "Filters",
-      {filter_row("--range", "FROM:TO", "Keep returns in this range, in meters: 0.28:16",
-                  taken("range")),
-       filter_row("--fov", "FROM:TO", "Keep these directions, in degrees of the frame: -90:90",
-                  taken("fov")),
-       ignore,
-       text_row("--mask", "FILE", "Leave out returns inside the polygons of a file", options.mask,
-                completion::input),
-       limits_row("--speckle", "Leave out returns without another one near them", taken("speckle")),
-       limits_row("--edges", "Leave out veiling points at jumps of the range", taken("edges"))});
+      joined(filter_row("--range", "FROM:TO", "Keep returns in this range, in meters: 0.28:16",
+                        taken(options, "range")),
+             direction_rows(options),
+             text_row("--mask", "FILE", "Leave out returns inside the polygons of a file",
+                      options.mask, completion::input),
+             limits_row("--speckle", "Leave out returns without another one near them",
+                        taken(options, "speckle")),
+             limits_row("--edges", "Leave out veiling points at jumps of the range",
+                        taken(options, "edges"))));
 }
 
 mounting mounting_of(const std::string& text) {

@@ -100,6 +100,10 @@ using shared_options = std::shared_ptr<common_options>;
 [[nodiscard]] option_row duration_row(common_options& options);
 /// -n, -d, --idle.
 [[nodiscard]] option_rows ending_rows(common_options& options, bool with_idle = true);
+/// --fov, --ignore.
+[[nodiscard]] option_rows direction_rows(common_options& options);
+/// The filter with its frame and its ignored sectors, a view of `options`.
+[[nodiscard]] point_filter directions_of(const common_options& options);
 /// --range, --fov, --ignore, --mask, --speckle, --edges.
 [[nodiscard]] option_rows filter_rows(common_options& options);
 /// --near.

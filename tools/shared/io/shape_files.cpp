@@ -61,12 +61,10 @@ g4lidar::mask mask_in(const std::string& path) {
 }
 
 shaping_options shape_of(const common_options& how, const g4lidar::mask& loaded) {
-  shaping_options made{.filter = how.filter,
+  shaping_options made{.filter = directions_of(how),
                        .marks = how.marks,
                        .deskew = how.deskew,
                        .mount = how.mount.value_or(mounting{})};
-  made.filter.in = how.frame;
-  made.filter.ignored_sectors = how.ignored;
   made.filter.masks = loaded.polygons();
   return made;
 }

@@ -38,7 +38,9 @@ class source_reader final : private reader_listener {
   /// Why it has ended for good. Null before, at the end of a file with packets, and after a signal.
   [[nodiscard]] std::exception_ptr failure() const;
   /// What running_diagnosis finds; `skipped` before it was opened.
-  [[nodiscard]] std::vector<stage_report> stages() const { return diagnosis_.stages(); }
+  [[nodiscard]] std::vector<stage_report> stages() const {
+    return diagnosis_.stages(directions_of(options_));
+  }
   /// See opened_source. Only in the thread.
   [[nodiscard]] const sim::simulated_source* simulation() const noexcept { return simulation_; }
 
