@@ -73,7 +73,7 @@ void live_run::run() {
   report_stream();
   report_rate(log_, measured_, device_, *lidar_.which);
   report_loss(log_, measured_, *lidar_.which);
-  report_returns(log_, measured_, *lidar_.which, log_.options().directions);
+  report_returns(log_, measured_, device_, *lidar_.which, log_.options().directions);
   report_latency(log_, measured_, baud, link_.port().name());
 }
 

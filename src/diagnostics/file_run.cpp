@@ -108,7 +108,7 @@ class file_run {
         if (is_stop(item.data)) await_speed();
         return;
       case recorded_item::kind::other:
-        has_zero_ = has_zero_ || item.other.zero;
+        if (item.other.zero) device_.zero = item.other.zero;
         if (item.other.what == recorded_event::kind::gap) measured_.part();
         if (item.other.what == recorded_event::kind::closed) await_speed();
         return;
@@ -131,7 +131,7 @@ class file_run {
     stated_.take(observed.what);
     if (const auto* response = std::get_if<response_view>(&observed.what)) {
       device_.take(*response);
-      has_zero_ = replies_.take(*response, model_).zero || has_zero_;
+      if (const auto zero = replies_.take(*response, model_).zero) device_.zero = zero;
       if (response->kind() == response_kind::scan_started) await_speed();
     }
     if (std::get_if<response_view>(&observed.what) == nullptr) replies_.pass();
@@ -169,7 +169,7 @@ class file_run {
       baud.remark = "It is also possible that these bytes are not those of a lidar.";
     }
     log_.report(std::move(baud));
-    if (counts.packets > 0 && has_request(model_, request_kind::zero_angle) && !has_zero_) {
+    if (counts.packets > 0 && has_request(model_, request_kind::zero_angle) && !device_.zero) {
       stage_report answers{.stage = diagnostic_stage::answers};
       answers.find(diagnosis::no_zero_angle);
       answers.remark = "The answer to command 93 is not in this file.";
@@ -202,7 +202,7 @@ class file_run {
     log_.report(std::move(stream));
     report_rate(log_, measured_, device_, model_);
     report_loss(log_, measured_, model_);
-    report_returns(log_, measured_, model_, log_.options().directions);
+    report_returns(log_, measured_, device_, model_, log_.options().directions);
     log_.skip(diagnostic_stage::usb_latency,
               "The reader of a file or a recording groups bytes itself.");
   }
@@ -217,7 +217,6 @@ class file_run {
   device_snapshot device_;
   identity_reader stated_;  // in CT bytes, too
   reply_watch replies_;
-  bool has_zero_ = false;     // the offset of zero is known
   std::uint64_t looked_ = 0;  // samples at the last check of the speed
   bool is_judging_ = false;
   std::int64_t arrival_ns_ = 0;

@@ -176,6 +176,9 @@ void device_snapshot::take_setting(command asked, const response_view& reply, co
     const std::uint32_t hz = rate_hz_of_code(which, *value);
     if (hz != 0) sample_rate_hz = hz;
   }
+  if (asked == command::zero_angle) {
+    if (const auto found = zero_angle_of(reply, which)) zero = found;
+  }
 }
 
 device_snapshot reply_statistics::snapshot(const model& which) const {

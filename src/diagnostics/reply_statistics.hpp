@@ -20,10 +20,11 @@ struct device_snapshot {
   std::optional<health> condition{};
   std::optional<scan_frequency> frequency{};      ///< As set; without the offset of replies.
   std::optional<std::uint32_t> sample_rate_hz{};  ///< As set.
+  std::optional<zero_angle> zero{};               ///< The offset of zero.
 
   /// The information or the health, if the reply contains it.
   void take(const response_view& reply);
-  /// The frequency or the sample rate, if this is the reply of a lidar like `which` to such a command.
+  /// The frequency, the sample rate or the offset of zero, if this is the reply of a lidar like `which` to such a command.
   void take_setting(command asked, const response_view& reply, const model& which);
 };
 

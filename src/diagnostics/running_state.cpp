@@ -150,7 +150,7 @@ std::vector<stage_report> running_state::stages(const point_filter& directions) 
       report_rate(log, of.measured, of.known, *of.which);
     }
     report_loss(log, of.measured, *of.which);
-    report_returns(log, of.measured, *of.which, directions);
+    report_returns(log, of.measured, of.known, *of.which, directions);
     report_latency(log, of.measured, of.baud, of.name);
     return std::move(log.stages());
   }

@@ -289,8 +289,8 @@ void report_loss(stage_log& log, const stream_statistics& measured, const model&
   log.report(std::move(loss));
 }
 
-void report_returns(stage_log& log, const stream_statistics& measured, const model& wanted,
-                    const point_filter& directions) {
+void report_returns(stage_log& log, const stream_statistics& measured, const device_snapshot& known,
+                    const model& wanted, const point_filter& directions) {
   const return_map& seen = measured.tally().returns;
   if (!seen.is_round()) {
     return log.skip(diagnostic_stage::returns, "The lidar has not looked in each direction.");
@@ -304,12 +304,16 @@ void report_returns(stage_log& log, const stream_statistics& measured, const mod
   }
   point_filter wished = directions;
   wished.turn_deg = wanted.turn_deg;
-  const auto arcs = seen.without_return(least_blind_deg, [&wished](float middle_deg) {
-    return wished.has_direction({.angle_deg = middle_deg});
+  const float zero_deg = known.zero ? static_cast<float>(known.zero->deg()) : 0.0F;
+  const auto bearing_of = [&](float seen_deg) {
+    return static_cast<float>(wrap_deg(seen_deg + zero_deg));
+  };
+  const auto arcs = seen.without_return(least_blind_deg, [&](float middle_deg) {
+    return wished.has_direction({.angle_deg = bearing_of(middle_deg)});
   });
   for (const direction_arc& arc : arcs) {
     const auto in_words = [&](int degree) {
-      const auto turned = static_cast<float>(degree % 360);
+      const float turned = bearing_of(static_cast<float>(degree));
       return std::to_string(std::lround(bearing_deg(turned, wished.in, wanted.turn_deg)));
     };
     std::string from = in_words(arc.from_deg);

@@ -78,8 +78,8 @@ void report_rate(stage_log& log, const stream_statistics& measured, const device
 void report_loss(stage_log& log, const stream_statistics& measured, const model& wanted);
 /// returns: whether something came back, and the sectors from which nothing did, but for directions that the user
 /// leaves out.
-void report_returns(stage_log& log, const stream_statistics& measured, const model& wanted,
-                    const point_filter& directions);
+void report_returns(stage_log& log, const stream_statistics& measured, const device_snapshot& known,
+                    const model& wanted, const point_filter& directions);
 /// `baud` 0: bytes take no time. `name` is that of the transport: not all have a USB bridge.
 void report_latency(stage_log& log, const stream_statistics& measured, std::uint32_t baud,
                     std::string_view name);

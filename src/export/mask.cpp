@@ -74,7 +74,7 @@ std::variant<mask, mask_error> parse_mask(std::string_view text) {
 
 std::variant<mask, std::string> load_mask(const std::string& path) {
   if (path.empty()) return mask();
-  const std::string title = "mask: '" + printable(path) + "'";
+  const std::string title = "mask: " + in_quotes(path);
   const std::string advice = ". Give a file with lines 'polygon x1 y1 x2 y2 x3 y3 ...'.";
   std::string text;
   if (const std::string why = read_text_file(path, text); !why.empty())
