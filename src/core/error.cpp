@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "g4lidar/detail/enumerators.hpp"
 #include "g4lidar/error_code.hpp"
 #include "one_of.hpp"
 #include "printable_text.hpp"
@@ -194,11 +195,11 @@ constexpr bool in_order() {
 }
 static_assert(in_order());
 
-const words& words_of(problem what) noexcept { return all_words[static_cast<std::size_t>(what)]; }
+const words& words_of(problem what) noexcept { return detail::row_of(all_words, what); }
 
 detail_words words_of(problem what, error_detail detail) noexcept {
   if (detail == error_detail::usual) return {words_of(what).cause, words_of(what).advice};
-  detail_words found = all_details[static_cast<std::size_t>(detail) - 1];
+  detail_words found = detail::row_of(all_details, static_cast<std::size_t>(detail) - 1);
   if (found.cause.empty()) found.cause = words_of(what).cause;
   return found;
 }
@@ -286,9 +287,7 @@ std::string_view name_of(problem code) noexcept { return words_of(code).name; }
 
 std::string_view description_of(problem code) noexcept { return words_of(code).cause; }
 
-std::string_view name_of(task doing) noexcept {
-  return task_names[static_cast<std::size_t>(doing)];
-}
+std::string_view name_of(task doing) noexcept { return detail::name_in(task_names, doing); }
 
 const std::error_category& error_category() noexcept {
   static const category only;

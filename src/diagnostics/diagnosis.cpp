@@ -7,6 +7,7 @@
 #include <initializer_list>
 
 #include "export/value_text.hpp"
+#include "g4lidar/detail/enumerators.hpp"
 
 namespace g4lidar {
 namespace {
@@ -176,7 +177,7 @@ static_assert(rows.size() == diagnosis_count);
 }  // namespace
 
 diagnosis_info describe(diagnosis what) noexcept {
-  const row& from = rows[static_cast<std::size_t>(what)];
+  const row& from = detail::row_of(rows, what);
   const auto* const known = std::get_if<problem>(&from.advice);
   return {from.name, from.severity, from.cause,
           known != nullptr ? error(task::asking, *known).advice() : std::get<0>(from.advice),
@@ -187,12 +188,12 @@ std::string_view name_of(diagnostic_stage where) noexcept {
   constexpr std::array<std::string_view, diagnostic_stage_count> names{
       "port",  "permission", "holder", "baud_rate", "answers", "identity",   "health",
       "motor", "stream",     "rate",   "loss",      "returns", "usb_latency"};
-  return names[static_cast<std::size_t>(where)];
+  return detail::name_in(names, where);
 }
 
 std::string_view name_of(stage_verdict how) noexcept {
   constexpr std::array<std::string_view, 4> names{"ok", "skipped", "warn", "fail"};
-  return names[static_cast<std::size_t>(how)];
+  return detail::name_in(names, how);
 }
 
 diagnosis diagnosis_of(problem what) noexcept {

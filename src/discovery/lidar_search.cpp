@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "g4lidar/core/request.hpp"
-#include "g4lidar/detail/saturating.hpp"
 #include "inquiry.hpp"
 
 namespace g4lidar {
@@ -320,8 +319,7 @@ result<std::optional<device_information>> lidar_search::stop_and_ask(const model
                                                                      stop_attempts how) {
   // If it does not stop, the rest of the time shows what else it may be.
   const std::int64_t one_ns = in_ns(one_stop_ns);
-  const std::int64_t several_ns =
-      std::min(in_ns(stops_ns), detail::saturating_sub(deadline_ns_, information_ns));
+  const std::int64_t several_ns = std::min(in_ns(stops_ns), deadline_ns_ - information_ns);
   auto answered = inquiry(port_, like.samples, how)
                       .ask(how == stop_attempts::one ? one_ns : std::max(one_ns, several_ns));
   if (answered) return *answered;

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <utility>
 
+#include "g4lidar/detail/enumerators.hpp"
 #include "reader_thread.hpp"
 #include "recording/played_file.hpp"
 
@@ -13,9 +14,20 @@ namespace g4lidar {
 
 using namespace std::chrono_literals;
 
+namespace {
+
+/// Of a reader in this state, whose last call of the lidar ended so.
+error_detail why_no_scan(reader_state now, error_detail last) noexcept {
+  if (now == reader_state::resting) return error_detail::resting;
+  const bool is_away = now == reader_state::opening || now == reader_state::lost;
+  return is_away ? error_detail::searching : last;
+}
+
+}  // namespace
+
 std::string_view name_of(reader_state state) noexcept {
   constexpr std::array<std::string_view, 5> names{"opening", "running", "resting", "lost", "ended"};
-  return names[static_cast<std::size_t>(state)];
+  return detail::name_in(names, state);
 }
 
 reader_listener::~reader_listener() = default;
@@ -61,7 +73,8 @@ view_result<scan> background_reader::next_scan(lidar::milliseconds timeout) {
   if (const auto why = failed()) return tl::unexpected(*why);
   const bool stopped = thread_->requests.has_to_stop();
   if (stopped) return g4lidar::failure(task::reading, problem::not_scanning);
-  return g4lidar::failure(task::reading, problem::timeout, {}, 0, thread_->why_no_scan());
+  return g4lidar::failure(task::reading, problem::timeout, {}, 0,
+                          why_no_scan(thread_->view.state(), thread_->detail.load()));
 }
 
 const lidar_ring& background_reader::points() const noexcept {

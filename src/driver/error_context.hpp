@@ -11,6 +11,7 @@
 
 #include "g4lidar/core/model.hpp"
 #include "g4lidar/core/request.hpp"
+#include "g4lidar/detail/enumerators.hpp"
 
 namespace g4lidar {
 
@@ -39,7 +40,7 @@ class error_context {
   }
   /// "scan frequency 12 Hz", "health". Empty if the task is sufficient: start, stop.
   error_context& add(const request& wanted) noexcept {
-    const std::string_view what = request_words[static_cast<std::size_t>(wanted.what)];
+    const std::string_view what = detail::name_in(request_words, wanted.what);
     if (what.empty()) return *this;
     add(", ").add(what);
     if (wanted.what == request_kind::set_scan_frequency)

@@ -12,6 +12,7 @@
 
 #include "core/number_text.hpp"
 #include "driver.hpp"
+#include "g4lidar/detail/enumerators.hpp"
 #include "g4lidar/source.hpp"
 #include "option_problems.hpp"
 #include "outcome_error.hpp"
@@ -34,7 +35,7 @@ std::string_view name_of(lidar_event::kind what) noexcept {
       "lost",        "reconnected",   "found_scanning", "protection_starved", "protection_found_on",
       "spinning_up", "restarted",     "health_warning", "other_lidar",        "long_pause",
       "overflow",    "still_turning", "no_zero_angle",  "other_number"};
-  return names[static_cast<std::size_t>(what)];
+  return detail::name_in(names, what);
 }
 
 lidar::lidar(std::unique_ptr<driver> made) noexcept : driver_(std::move(made)) {}

@@ -97,13 +97,6 @@ void background_reader::thread::stop() noexcept {
   if (queue) queue->scans.end();
 }
 
-error_detail background_reader::thread::why_no_scan() const {
-  const reader_state now = view.state();
-  if (now == reader_state::resting) return error_detail::resting;
-  const bool is_away = now == reader_state::opening || now == reader_state::lost;
-  return is_away ? error_detail::searching : detail_.load();
-}
-
 std::int64_t background_reader::thread::wall_ns(std::int64_t time_ns) noexcept {
   player* const file = played();
   return file != nullptr ? file->wall_ns(time_ns)
@@ -189,7 +182,7 @@ void background_reader::thread::read() {
   give_events(is_over);
   if (is_over) return fail(*why);
   if (!why || *why != problem::cancelled) {
-    detail_.store(why ? why->detail() : error_detail::usual, std::memory_order_relaxed);
+    detail.store(why ? why->detail() : error_detail::usual, std::memory_order_relaxed);
   } else if (!is_woken && is_cancelled()) {
     end(*why);
   }

@@ -34,8 +34,6 @@ class G4LIDAR_HIDDEN background_reader::thread
   void stop() noexcept;
   /// Whether this is called in the thread itself, which cannot wait for itself.
   [[nodiscard]] bool is_own() const noexcept;
-  /// Why a call that waited for a scan has none.
-  [[nodiscard]] error_detail why_no_scan() const;
   /// Of the lidar that was given.
   [[nodiscard]] const lidar_ring& points() const noexcept {
     return is_given_ ? device_->points() : empty_ring();
@@ -44,7 +42,8 @@ class G4LIDAR_HIDDEN background_reader::thread
 
   reader_requests requests;
   reader_view view;
-  std::unique_ptr<reader_queue> queue;  // where there is no listener
+  std::unique_ptr<reader_queue> queue;                     // where there is no listener
+  std::atomic<error_detail> detail = error_detail::usual;  // why no scan has come, while it runs
 
  private:
   using clock = std::chrono::steady_clock;
@@ -96,7 +95,6 @@ class G4LIDAR_HIDDEN background_reader::thread
   wall_clock wall_;
   clock::time_point wall_due_{};
   reader_listener nobody_;  // instead of the listener, after a stop() in the thread
-  std::atomic<error_detail> detail_ = error_detail::usual;  // why no scan has come
   std::mutex start_mutex_;  // for start() and stop() by several threads at once
   std::thread thread_;
 };

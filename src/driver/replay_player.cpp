@@ -79,7 +79,8 @@ result<void> replay_player::can_read() const noexcept {
 /// Where the recorded lidar was lost or stopped, the recording goes on later, or ends.
 scan_expectation replay_player::expects() const noexcept {
   if (!is_scanning()) return {};
-  const auto why = file_ != nullptr ? error_detail::of_file : why_no_scan();  // a pipe
+  const auto why =
+      file_ != nullptr ? error_detail::of_file : why_not_yet(pipeline_, now_ns());  // a pipe
   if (!delivers_ || stands()) return {never_ns, why};
   return {spin_up_.lasts(pipeline_.scans()) ? spin_up_.ends_ns() : 0, why};
 }

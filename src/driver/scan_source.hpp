@@ -29,6 +29,15 @@ struct scan_expectation {
   std::string_view lost{};                 ///< What is looked for; valid until it is found.
 };
 
+/// Why a scan that is due has not come: packets of it have come in the last moments, or nothing.
+[[nodiscard]] inline error_detail why_not_yet(const point_pipeline& from,
+                                              std::int64_t now_ns) noexcept {
+  constexpr std::int64_t longest_gap_ns = 200'000'000;  // with the largest batch
+  const std::int64_t last_ns = from.decoder().last_packet_ns();
+  const bool is_moving = last_ns != 0 && now_ns - last_ns < longest_gap_ns;
+  return is_moving ? error_detail::no_revolution : error_detail::usual;
+}
+
 /// *Single thread.* The pipeline, the connection and the events must outlive it.
 class scan_source {
  public:
@@ -107,14 +116,6 @@ class scan_source {
   [[nodiscard]] std::int64_t now_ns() const noexcept { return connection_.now_ns(); }
   void report(lidar_event::kind what, problem reason = problem::timeout) noexcept {
     events_.put({what, reason, now_ns()});
-  }
-
-  /// Why a scan that is due has not come: packets of it have come in the last moments, or nothing.
-  [[nodiscard]] error_detail why_no_scan() const noexcept {
-    constexpr std::int64_t longest_gap_ns = 200'000'000;  // with the largest batch
-    const std::int64_t last_ns = pipeline_.decoder().last_packet_ns();
-    const bool is_moving = last_ns != 0 && now_ns() - last_ns < longest_gap_ns;
-    return is_moving ? error_detail::no_revolution : error_detail::usual;
   }
 
   /// The motor is started: the first scan comes when it has spun up.

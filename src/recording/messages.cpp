@@ -8,6 +8,7 @@
 
 #include "g4lidar/core/model.hpp"
 #include "g4lidar/core/response.hpp"
+#include "g4lidar/detail/enumerators.hpp"
 #include "g4lidar/message/ros_messages.hpp"
 #include "g4lidar/recording/raw_bytes.hpp"
 #include "message/cdr.hpp"
@@ -22,7 +23,7 @@ constexpr std::array<std::string_view, 11> event_names{"opened",   "closed",  "s
 }  // namespace
 
 std::string_view name_of(recorded_event::kind what) noexcept {
-  return event_names[static_cast<std::size_t>(what)];
+  return detail::name_in(event_names, what);
 }
 
 std::string_view computed_with() noexcept {

@@ -297,6 +297,10 @@ result<std::unique_ptr<connector>> open_raw_bytes(const std::string& name,
                                                   std::function<bool()> is_cancelled,
                                                   const model* which) {
   if (const auto wrong = problem_with(options)) return tl::unexpected(*wrong);
+  if (sample_rate_hz && (*sample_rate_hz < 1 || *sample_rate_hz > 1'000'000)) {
+    return failure(task::configuring, problem::bad_option,
+                   "raw_sample_rate_hz: 1 to 1000000, not " + std::to_string(*sample_rate_hz));
+  }
   owned_fd fd = open_bytes(name);
   if (fd.get() < 0) return failure(task::opening, problem::system, name, errno);
   struct stat file{};

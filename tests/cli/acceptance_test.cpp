@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
@@ -113,17 +114,21 @@ class Settings : public AcceptanceVerb {
 
   /// The kit at work: it has changed the frequency.
   [[nodiscard]] std::unique_ptr<program> begun() {
+    const std::size_t before = steps();
     auto asked = std::make_unique<program>(
         std::vector<std::string>{"acceptance", "--alone", "--model", "t-mini", "--file",
                                  path("t.mcap"), link_},
         cli::streams{cli::stream{}, cli::stream{}, cli::stream::of_file(messages_)});
-    EXPECT_TRUE(g4lidar::test::comes_true([&] { return has_stepped(); }));
+    EXPECT_TRUE(g4lidar::test::comes_true([&] { return steps() > before; }));
     return asked;
   }
 
   [[nodiscard]] std::string messages() const { return cli::read_file(messages_); }
-  [[nodiscard]] bool has_stepped() const {
-    return cli::read_file(log_).find("A5 0B") != std::string::npos;
+  /// By 1 Hz, upwards.
+  [[nodiscard]] std::size_t steps() const {
+    const auto lines = lines_of(cli::read_file(log_));
+    return static_cast<std::size_t>(std::ranges::count_if(
+        lines, [](const std::string& line) { return line.find("A5 0B") != std::string::npos; }));
   }
   [[nodiscard]] std::string frequency() const {
     return json::parse(run({"info", "--json", link_}).out).at("frequency").dump();
@@ -137,7 +142,6 @@ class Settings : public AcceptanceVerb {
 
 TEST_F(Settings, AreAsBefore_AfterASignal) {
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
-    cli::write_file(log_, "");  // the simulator appends
     const auto asked = begun();
     asked->send(signal);
     const outcome done = asked->wait();
@@ -148,14 +152,7 @@ TEST_F(Settings, AreAsBefore_AfterASignal) {
   }
 }
 
-TEST_F(Settings, AreAsBefore_AfterAPipeThatIsClosed) {
-  const auto asked = begun();
-  asked->close_output();
-  static_cast<void>(asked->wait());
-  EXPECT_EQ(frequency(), "10.0") << messages();
-}
-
-TEST_F(Settings, OfALostLidar_TheCommandIsSaid) {
+TEST_F(Settings, OfALostLidar_TheCommandIsPrinted) {
   const auto asked = begun();
   served_.send(SIGKILL);
   const outcome done = asked->wait();

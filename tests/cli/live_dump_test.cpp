@@ -136,7 +136,7 @@ TEST_F(Live, Interrupted_PrintsTheCounts) {
 TEST_F(Live, File_GrowsAndIsValidAfterAKill) {
   const std::string out = path("out.csv");
   cli::write_file(out, "older\n");
-  program started({"dump", "sim:", "-f", "csv", "-o", out, "-q"});
+  program started({"dump", "sim:", "-f", "csv", "-o", out, "-q", "--force"});
   ASSERT_TRUE(comes_true([&] { return size_of(out) > 1000; }));
   EXPECT_EQ(listing(), "out.csv\n");
   started.send(SIGKILL);
@@ -147,8 +147,8 @@ TEST_F(Live, File_GrowsAndIsValidAfterAKill) {
 TEST_F(Live, NoPoint_KeepsTheOlderFile) {
   const std::string out = path("out.csv");
   cli::write_file(out, "older\n");
-  EXPECT_EQ(run({"dump", path("none"), "-o", out}).code, 3);
-  EXPECT_EQ(run({"dump", "sim:?fault=mute@0", "-o", out}).code, 6);
+  EXPECT_EQ(run({"dump", path("none"), "-o", out, "--force"}).code, 3);
+  EXPECT_EQ(run({"dump", "sim:?fault=mute@0", "-o", out, "--force"}).code, 6);
   EXPECT_EQ(cli::read_file(out), "older\n");
   EXPECT_EQ(listing(), "out.csv\n");
 }

@@ -32,7 +32,7 @@ class Sim : public cli::scratch {
   // Its bytes with these options.
   std::string bytes_of(std::vector<std::string> options) {
     options.insert(options.begin(), "sim");
-    options.insert(options.end(), {"-o", path("x.bin")});
+    options.insert(options.end(), {"-o", path("x.bin"), "--force"});
     const outcome done = run(options);
     EXPECT_EQ(done.code, 0) << done.err;
     EXPECT_EQ(done.out, "");

@@ -8,7 +8,9 @@
 
 #include <gtest/gtest.h>
 
+#include "g4lidar/background_reader.hpp"
 #include "g4lidar/bulk_decoder.hpp"
+#include "g4lidar/core/stream_counter.hpp"
 #include "g4lidar/detail/text.hpp"
 #include "g4lidar/diagnostics/diagnosis.hpp"
 #include "g4lidar/export/byte_points.hpp"
@@ -256,10 +258,14 @@ TEST(ExtremeOutput, Names) {
     use(diagnosis_of(what));
     use(name_of(what));
   });
+  with_extremes<reader_state>([](reader_state state) { use(name_of(state)); });
+  with_extremes<lidar_event::kind>([](lidar_event::kind what) { use(name_of(what)); });
   with_extremes<task>([](task doing) { use(name_of(doing)); });
   with_extremes<recorded_event::kind>([](recorded_event::kind what) { use(name_of(what)); });
   many_times([](test::dice& random) {
-    stream_counts counts;
+    stream_counter counts;
+    counts.add(skipped{any<std::size_t>(random), any<skip_reason>(random)});
+    use(counts.skipped(any<skip_reason>(random)));
     counts.packets = any<std::uint64_t>(random);
     counts.parsed_bytes = any<std::uint64_t>(random);
     use(diagnosis_of(counts, any<std::uint64_t>(random)));

@@ -95,7 +95,6 @@ namespace detail {
   }
   if (have < 8) return {wire_state::incomplete, have + 1};
   const std::size_t size = packet_size(data[3], format.layout);
-  if (size > max_packet_size) return refused_at(3);
   if (have < size) return {wire_state::incomplete, size};
   const bool agrees = packet_checksum(data.first(size), format.layout) == load_u16(data, 8);
   return {agrees ? wire_state::valid : wire_state::bad_checksum, size};
@@ -105,12 +104,15 @@ namespace detail {
 /// check_packet(); it is valid as long as these bytes do not change.
 class packet_view {
  public:
-  /// A view of `packet` if it is one valid packet of this format from its first to its last byte, or
-  /// nothing.
+  /// A view of `packet` if it is one valid packet of this format from its first to its last byte, and not
+  /// longer than max_packet_size, or nothing.
   [[nodiscard]] static constexpr std::optional<packet_view> from(
       bytes packet, sample_format format = g4_format) noexcept {
     const wire_check check = check_packet(packet, format);
-    if (check.state != wire_state::valid || check.size != packet.size()) return std::nullopt;
+    if (check.state != wire_state::valid || check.size != packet.size() ||
+        check.size > max_packet_size) {
+      return std::nullopt;
+    }
     return packet_view(packet, format.layout);
   }
   /// Deleted: the bytes are destroyed at the end of the call.

@@ -42,7 +42,8 @@ struct stream_counter : stream_counts {
   /// skipped bytes,
   constexpr void add(g4lidar::skipped gone) noexcept {
     crc.add(gone);
-    skipped_by_reason[static_cast<std::size_t>(gone.reason)] += gone.count;
+    const auto reason = static_cast<std::size_t>(gone.reason);
+    skipped_by_reason[reason < skip_reasons ? reason : skip_reasons - 1] += gone.count;
   }
   /// what another counter counted,
   constexpr void add(const stream_counts& other) noexcept {

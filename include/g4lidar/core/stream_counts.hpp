@@ -24,9 +24,10 @@ struct stream_counts {
   std::uint64_t crc_mismatches = 0;  ///< Revolutions that lost a packet, by that CRC.
   std::array<std::uint64_t, skip_reasons> skipped_by_reason{};  ///< Bytes.
 
-  /// Bytes skipped for `reason`.
+  /// Bytes skipped for `reason`; 0 for a number that is none.
   [[nodiscard]] constexpr std::uint64_t skipped(skip_reason reason) const noexcept {
-    return skipped_by_reason[static_cast<std::size_t>(reason)];
+    const auto at = static_cast<std::size_t>(reason);
+    return at < skip_reasons ? skipped_by_reason[at] : 0;
   }
   /// Bytes skipped for any reason.
   [[nodiscard]] constexpr std::uint64_t skipped_bytes() const noexcept {

@@ -108,8 +108,14 @@ namespace detail {
 /// At every moment: bytes in = bytes of packets, responses and time packets + bytes skipped + held().
 class stream_parser {
  public:
-  /// For packets of this format; packets of another one are skipped and counted.
-  explicit constexpr stream_parser(sample_format format = g4_format) noexcept : format_(format) {}
+  /// For packets of this format; packets of another one, or longer than max_packet_size, are skipped and
+  /// counted.
+  explicit constexpr stream_parser(sample_format format = g4_format) noexcept : format_(format) {
+    constexpr std::size_t room = max_packet_size - packet_header_size;
+    const std::size_t most = room / sample_size(format.layout);
+    format_.max_samples =
+        static_cast<std::uint8_t>(std::min<std::size_t>(format.max_samples, most));
+  }
 
   /// Packets are of this layout from now on. Its samples have the size of those before.
   constexpr void set_layout(sample_layout layout) noexcept {

@@ -9,6 +9,7 @@
 #include <optional>
 #include <utility>
 
+#include "g4lidar/detail/enumerators.hpp"
 #include "sim/read_time.hpp"
 #include "sim/world/world_text.hpp"
 
@@ -62,7 +63,7 @@ constexpr bool in_order() {
 static_assert(in_order());
 
 const kind_traits& traits_of(fault_kind kind) noexcept {
-  return kinds[static_cast<std::size_t>(kind)];
+  return g4lidar::detail::row_of(kinds, kind);
 }
 
 struct number {
@@ -213,6 +214,7 @@ fault make_fault(fault_kind kind, std::int64_t begin_ns, std::int64_t duration_n
 std::string_view name_of(fault_kind kind) noexcept { return traits_of(kind).name; }
 
 std::string_view problem_with(const fault& f) noexcept {
+  if (f.kind > last_fault_kind) return "a fault must be of a known kind";
   if (f.begin_ns < 0 || f.begin_ns > longest_ns) return "a fault must begin within 0 to 11 days";
   if (f.duration_ns < 0) return "a fault must not end before it begins";
   if (!(f.rate >= 0.0 && f.rate <= 1.0)) return "the rate of a fault must be 0 to 1";

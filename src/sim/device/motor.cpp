@@ -6,6 +6,7 @@
 
 #include <algorithm>
 
+#include "g4lidar/detail/saturating.hpp"
 #include "sim/purpose.hpp"
 
 namespace g4lidar::sim {
@@ -63,7 +64,8 @@ std::int64_t motor::undisturbed_mhz(std::int64_t now_ns) const noexcept {
 
 std::uint32_t motor::speed_mhz(std::int64_t now_ns) const noexcept {
   const std::int64_t speed = undisturbed_mhz(now_ns);
-  const std::int64_t off_ppm = drift_ppm_ * wave_ppm(now_ns + offset_ns_, period_ns_) / 1'000'000;
+  const std::int64_t off_ppm =
+      drift_ppm_ * wave_ppm(detail::saturating_add(now_ns, offset_ns_), period_ns_) / 1'000'000;
   return static_cast<std::uint32_t>(speed + speed * off_ppm / 1'000'000);
 }
 

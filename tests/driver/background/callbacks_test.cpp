@@ -2,13 +2,19 @@
 // Every function of a reader, called in every function that its thread calls.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <atomic>
 #include <chrono>
+#include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <future>
 #include <memory>
 #include <mutex>
+#include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -71,7 +77,9 @@ class Callbacks : public ::testing::TestWithParam<place> {
     heard_.act = std::move(act);
     acted_ = heard_.done.get_future();
     // Destroyed with the options, when the thread holds nothing any more.
-    const std::shared_ptr<void> last(nullptr, [this](void*) { gone_.set_value(); });
+    const auto gone = std::make_shared<std::promise<void>>();
+    is_gone_ = gone->get_future();
+    const std::shared_ptr<void> last(nullptr, [gone](void*) { gone->set_value(); });
     lidar_options options{.device = "sim:?fault=unplug@900ms+300ms&standstill_ns=10ms",
                           .reconnect = true};
     if (GetParam() == place::is_cancelled) {
@@ -106,14 +114,15 @@ class Callbacks : public ::testing::TestWithParam<place> {
   [[nodiscard]] int calls_after() const { return heard_.calls_after; }
 
   running_diagnosis judge;
-  std::unique_ptr<background_reader> reader;
 
  private:
   temporary_path file_;
   acting heard_;
   std::future<void> acted_;
-  std::promise<void> gone_;
-  std::future<void> is_gone_ = gone_.get_future();
+  std::future<void> is_gone_;
+
+ protected:
+  std::unique_ptr<background_reader> reader;  // destroyed first
 };
 
 TEST_P(Callbacks, EveryFunctionThatMayBeCalledThere) {
@@ -148,7 +157,7 @@ TEST_P(Callbacks, EveryFunctionThatMayBeCalledThere) {
     expect(!judge.stages().empty(), "stages() of the diagnosis");
     if (device == nullptr) return;
     device->wake();
-    expect(device->points().written() == 0 || true, "the ring of the lidar");
+    expect(device->points().size() > 0, "the ring of the lidar");
   });
   is_made.unlock();
   ASSERT_TRUE(has_acted());

@@ -29,7 +29,7 @@ bool measure_spin_up(lidar_link& link, step_result& into) {
   const std::int64_t first_ns = link.wait_for_packet(start_ns);
   if (first_ns < 0) return false;
   into.add("resumes_after_ms", in_ms(first_ns));
-  const steady_motor motor = link.wait_until_steady();
+  const steady_motor motor = wait_until_steady(link);
   if (motor.hz > 0.0) into.add("steady_after_ms", in_ms(motor.since_ns - begin_ns));
   return true;
 }
@@ -81,7 +81,7 @@ void find_start(subject& of, step_result& into) {
   into.add("starts_by_opening", by_opening);
   bool goes_on = false;
   if (by_opening) {
-    link.pulse_dtr(short_ns);
+    pulse_dtr(link, short_ns);
     link.listen_for(run_down_ns);
     // Where the supply was cut, it must be started again.
     goes_on = link.wait_for_packet(silence_ns) >= 0 || starts(link);
@@ -99,7 +99,7 @@ void find_start(subject& of, step_result& into) {
 void dtr(subject& of, step_result& into) {
   lidar_link& link = *of.link;
   if (!link.set_dtr(true)) return into.find(not_done, "The connection has no DTR.");
-  link.pulse_dtr();
+  pulse_dtr(link);
   bool turns = starts(link);
   // Where the line switches the supply, it had to boot before.
   if (!turns && of.is_two_way()) turns = starts(link);

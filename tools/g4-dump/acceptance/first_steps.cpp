@@ -125,7 +125,7 @@ void queries(subject& of, step_result& into) {
   std::map<std::uint8_t, std::int64_t> slowest_ns;
   for (const query_row& each : query_rows()) {
     for (int i = 0; i < rounds; ++i) {
-      raw_reply got = of.link->ask(each.code);
+      raw_reply got = of.link->ask(static_cast<command>(each.code));
       if (!got.is_response()) continue;
       slowest_ns[each.code] = std::max(slowest_ns[each.code], got.first_ns);
       replies[each.code] = std::move(got);

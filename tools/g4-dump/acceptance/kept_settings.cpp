@@ -20,15 +20,15 @@ constexpr std::int32_t protection_off = 1;
 bool set_frequency(lidar_link& link, std::int32_t wanted_chz) {
   constexpr int near_chz = 5;  // half of the smallest step
   constexpr int most_steps = 60;
-  constexpr int most_in_vain = 5;
+  constexpr int most_without_effect = 5;
   value last;
-  int in_vain = 0;
-  for (int i = 0; i < most_steps && in_vain < most_in_vain; ++i) {
+  int without_effect = 0;
+  for (int i = 0; i < most_steps && without_effect < most_without_effect; ++i) {
     const value now = link.number(frequency_query);
     if (!now) return false;
     const int missing = wanted_chz - *now;
     if (std::abs(missing) <= near_chz) return true;
-    in_vain = now == last ? in_vain + 1 : 0;
+    without_effect = now == last ? without_effect + 1 : 0;
     last = now;
     const bool is_coarse = std::abs(missing) >= 100;
     const command up = is_coarse ? frequency_up_1_hz : frequency_up_0_1_hz;

@@ -135,17 +135,17 @@ void lidar_link::look_for_text(bytes noise) {
   }
 }
 
-void lidar_link::write(bytes data) {
+void lidar_link::send(command code) {
   if (is_over()) return;
-  const auto sent = port_->write(data, now_ns() + 500 * ms);
+  const auto sent = port_->write(encode(code), now_ns() + 500 * ms);
   if (!sent && sent.error() != problem::cancelled) error_ = sent.error();
 }
 
-raw_reply lidar_link::ask(std::uint8_t code, std::int64_t patience_ns) {
+raw_reply lidar_link::ask(command code, std::int64_t patience_ns) {
   constexpr std::int64_t rest_ns = 40 * ms;
   constexpr std::size_t longest_reply = 256;
   raw_reply got;
-  send(static_cast<command>(code));
+  send(code);
   const std::int64_t asked_ns = now_ns();
   std::int64_t until_ns = asked_ns + patience_ns;
   on_bytes_ = [&](bytes data, std::int64_t arrival_ns) {
@@ -193,12 +193,12 @@ std::int64_t lidar_link::wait_for_silence(std::int64_t patience_ns) {
 }
 
 // By the samples of a revolution: a USB bridge delays bytes, and does not change their number.
-steady_motor lidar_link::wait_until_steady() {
+steady_motor wait_until_steady(lidar_link& link) {
   std::vector<revolution> all;
   std::size_t steady = 0;
   std::int64_t end_ns = 0;
-  std::int64_t until_ns = now_ns() + spin_up_ns;
-  listen(until_ns, [&](const event& found, std::int64_t arrival_ns) {
+  std::int64_t until_ns = link.now_ns() + spin_up_ns;
+  link.listen(until_ns, [&](const event& found, std::int64_t arrival_ns) {
     const auto* const packet = std::get_if<packet_view>(&found);
     if (packet == nullptr || steady > 0) return;
     if (packet->is_zero()) {
@@ -216,14 +216,14 @@ steady_motor lidar_link::wait_until_steady() {
 
 bool lidar_link::set_dtr(bool high) { return !is_over() && port_->set_dtr(high).value_or(false); }
 
-bool lidar_link::pulse_dtr(std::int64_t low_ns) {
-  if (!set_dtr(false)) return false;
-  listen_for(low_ns);
-  return set_dtr(true);
+bool pulse_dtr(lidar_link& link, std::int64_t low_ns) {
+  if (!link.set_dtr(false)) return false;
+  link.listen_for(low_ns);
+  return link.set_dtr(true);
 }
 
 std::int64_t lidar_link::start() {
-  if (which_.motor == motor_kind::dtr) pulse_dtr();
+  if (which_.motor == motor_kind::dtr) pulse_dtr(*this);
   if (is_two_way()) send(command::start);
   return wait_for_packet(spin_up_ns);
 }
@@ -256,14 +256,14 @@ stream_survey lidar_link::survey(std::int64_t time_ns) {
   return made;
 }
 
-stream_survey lidar_link::steady_survey(std::int64_t time_ns) {
+stream_survey steady_survey(lidar_link& link, std::int64_t time_ns) {
   constexpr int most = 3;
   constexpr std::int64_t short_ns = 5'000 * ms;
   constexpr std::int64_t least_gaps = 20;  // of the longest length, that fit into the time
   for (int i = 1;; ++i) {
-    stream_survey made = survey(time_ns);
+    stream_survey made = link.survey(time_ns);
     const bool is_steady = made.longest_gap_ns * least_gaps < time_ns;
-    if (is_steady || i == most || time_ns > short_ns || is_over()) return made;
+    if (is_steady || i == most || time_ns > short_ns || link.is_over()) return made;
   }
 }
 

@@ -71,20 +71,15 @@ class lidar_link {
   /// Packets are those of a lidar like `which` from now on, which is copied.
   void read_as(const model& which);
 
-  void send(command code) { write(encode(code)); }
+  void send(command code);
   /// Sends a command, and waits for its reply.
-  [[nodiscard]] raw_reply ask(std::uint8_t code, std::int64_t patience_ns = 400 * ms);
-  [[nodiscard]] raw_reply ask(command code, std::int64_t patience_ns = 400 * ms) {
-    return ask(static_cast<std::uint8_t>(code), patience_ns);
-  }
+  [[nodiscard]] raw_reply ask(command code, std::int64_t patience_ns = 400 * ms);
   /// The number that answers a query that changes nothing: asked again where no answer comes.
   [[nodiscard]] std::optional<std::int32_t> number(command query);
   /// Waits for a packet; how long it took, or -1.
   [[nodiscard]] std::int64_t wait_for_packet(std::int64_t patience_ns);
   /// Waits until nothing has arrived for 150 ms; when the last byte came after now, or -1.
   [[nodiscard]] std::int64_t wait_for_silence(std::int64_t patience_ns);
-  /// Waits until four revolutions and a second have the same speed within 3 %, at most 12 s.
-  [[nodiscard]] steady_motor wait_until_steady();
   /// Starts the motor, in the way of the model. How long the first packet took, or -1.
   std::int64_t start();
   /// Stops the scan. Returns whether a two-way lidar is silent.
@@ -93,12 +88,8 @@ class lidar_link {
   bool stop();
   /// Sets the line DTR; false if there is none.
   bool set_dtr(bool high);
-  /// Lowers DTR for this time, which stops a motor that it drives, and raises it. False if there is none.
-  bool pulse_dtr(std::int64_t low_ns = 120 * ms);
   /// A scan of this length.
   [[nodiscard]] stream_survey survey(std::int64_t time_ns);
-  /// The same for its rates: a short one in which the stream pauses, as where the host is busy, is repeated.
-  [[nodiscard]] stream_survey steady_survey(std::int64_t time_ns);
 
   [[nodiscard]] transport& port() noexcept { return *port_; }
   [[nodiscard]] std::int64_t now_ns() const noexcept { return port_->now_ns(); }
@@ -117,7 +108,6 @@ class lidar_link {
   }
 
  private:
-  void write(bytes data);
   void take(bytes data, std::int64_t arrival_ns, const observer& to);
   void give(const event& found, std::int64_t arrival_ns, const observer& to);
   void look_for_text(bytes noise);
@@ -137,5 +127,12 @@ class lidar_link {
   std::optional<error> error_{};
   bool is_cancelled_now_ = false;
 };
+
+/// Lowers DTR for this time, which stops a motor that it drives, and raises it. False if there is none.
+bool pulse_dtr(lidar_link& link, std::int64_t low_ns = 120 * ms);
+/// Waits until four revolutions and a second have the same speed within 3 %, at most 12 s.
+[[nodiscard]] steady_motor wait_until_steady(lidar_link& link);
+/// A survey for its rates: a short one in which the stream pauses, as where the host is busy, is repeated.
+[[nodiscard]] stream_survey steady_survey(lidar_link& link, std::int64_t time_ns);
 
 }  // namespace g4_tool::acceptance

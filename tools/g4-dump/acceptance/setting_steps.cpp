@@ -75,7 +75,7 @@ void sample_rate(subject& of, step_result& into) {
     if (!code || !codes.insert(*code).second) break;
     static_cast<void>(of.link->start());
     static_cast<void>(of.link->survey(measured_ns));  // while the motor spins up
-    const stream_survey heard = of.link->steady_survey(measured_ns);
+    const stream_survey heard = steady_survey(*of.link, measured_ns);
     of.link->stop();
     into.add(fmt::format("code_{}_hz", *code), heard.sample_rate_hz());
     into.add(fmt::format("code_{}_samples", *code), heard.most_samples);
@@ -98,7 +98,7 @@ void start_and_stop(subject& of, step_result& into) {
     return;
   }
   into.add("first_packet_ms", in_ms(first_ns));
-  const steady_motor motor = link.wait_until_steady();
+  const steady_motor motor = wait_until_steady(link);
   into.add("turns_steadily", motor.hz > 0.0);
   if (motor.hz > 0.0) {
     into.add("turns_hz", motor.hz);

@@ -67,7 +67,7 @@ void stream(subject& of, step_result& into) {
   static_cast<void>(link.survey(spun_up_ns));
   const std::uint64_t skipped_before = link.counts().skipped_bytes();
   of.surveyed = std::make_unique<stream_survey>(
-      link.steady_survey(std::chrono::nanoseconds(of.options.stream_time).count()));
+      steady_survey(link, std::chrono::nanoseconds(of.options.stream_time).count()));
   const stream_survey& heard = *of.surveyed;
   link.stop();
   const std::uint64_t packets = heard.counts.packets;
@@ -127,7 +127,6 @@ void ct_information(subject& of, step_result& into) {
   const bool is_long = heard.zero_packets > enough;
   into.add("crc_fits", heard.crc_fits);
   into.add("crc_does_not_fit", heard.crc_misfits);
-  into.add("packets_with_ct", heard.informing);
   if (is_long) into.add("crc_byte", has_crc);
   into.find(observed, has_crc    ? "A CRC byte follows."
                       : has_byte ? "A byte follows that is not the CRC."

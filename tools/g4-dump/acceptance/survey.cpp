@@ -98,8 +98,6 @@ void stream_survey::take(packet_view packet, std::int64_t arrival_ns) {
     samples_at_zero_ = samples_;
     reported_dhz_ += static_cast<std::uint64_t>(packet.reported_frequency_dhz());
     ++zero_packets;
-  } else if (packet.ct() >> 1 != 0) {
-    ++informing;
   }
   const std::size_t count = packet.sample_count();
   most_samples = std::max(most_samples, count);

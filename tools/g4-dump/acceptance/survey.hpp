@@ -59,7 +59,6 @@ class stream_survey {
   stream_counter counts;
   std::uint64_t zero_packets = 0;
   std::uint64_t bad_checksums = 0;
-  std::uint64_t informing = 0;  ///< Packets other than zero packets with other bits than 0 in CT.
   std::size_t most_samples = 0;
   std::int64_t longest_gap_ns = 0;  ///< The longest time between two packets.
   /// How many samples of a zone have each value of the two lower bits.

@@ -97,7 +97,7 @@ using chz = std::optional<std::int32_t>;
 void returned_one_way(subject& of, step_result& into) {
   const std::int64_t back_ns = of.link->now_ns();
   const std::int64_t first_ns = of.link->wait_for_packet(12'000 * ms);
-  const steady_motor motor = first_ns >= 0 ? of.link->wait_until_steady() : steady_motor{};
+  const steady_motor motor = first_ns >= 0 ? wait_until_steady(*of.link) : steady_motor{};
   const bool boots = of.link->boots() > 0 || of.link->counts().responses > 0;
   const bool dtr_drives = of.number(into, "low_silences") == 1.0;
   into.add("boots", boots);

@@ -44,8 +44,8 @@ mono are refused.)";
 
 constexpr const char* ending_text =
     R"(From a lidar or a pipe, OUT is created (with --force also replaced) with the first record and
-grows. From a file, OUT appears when everything is written. ^C stops the lidar; the records so far are
-written. With --on-loss reconnect or wait the command waits for a lost lidar, until --idle ends
+grows. From a file, OUT appears when everything is written. ^C stops the lidar; the records so far
+are written. With --on-loss reconnect or wait the command waits for a lost lidar, until --idle ends
 it; with wait also for one that is not connected yet. For files, -d counts the times of the
 points.)";
 

@@ -76,8 +76,10 @@ claimed_output::claimed_output(std::string name) : name_(std::move(name)) {
   refuse_inputs();
   std::vector<std::string>& others = ours().outputs;
   const auto here = place_of(name_);
-  if (here &&
-      std::ranges::any_of(others, [&](const auto& each) { return place_of(each) == here; })) {
+  const bool is_written = std::ranges::any_of(others, [&](const std::string& each) {
+    return (here && place_of(each) == here) || (each == "-" && name_ == "-");
+  });
+  if (is_written) {
     throw failure(exit_code::usage,
                   title_of_output(name_) + " is also another output. Give another name for it.");
   }
