@@ -237,28 +237,6 @@ def test_a_writer_refuses_impossible_odometry(tmp_path: Path, wrong: float, plac
     assert [item.pose for item in g4lidar.Recording(tmp_path / "a.mcap") if item.pose] == [(1.0, 2.0, 3.0)]
 
 
-def test_the_source_is_not_replaced(recorded: tuple[Path, list[g4lidar.Scan]], tmp_path: Path) -> None:
-    path, _ = recorded
-    room = tmp_path / "room.txt"
-    room.write_text("wall 2 2 -2 2\nwall -2 2 -2 -2\nwall -2 -2 2 -2\nwall 2 -2 2 2\n")
-    link = tmp_path / "link.mcap"
-    link.symlink_to(path)
-    for source, file in (path, path), (path, link), (f"sim:?world={room}", room):
-        before = file.read_bytes()
-        with pytest.raises(errors.BadOption):
-            g4lidar.open(str(source), record=file, overwrite=True)
-        assert file.read_bytes() == before
-
-
-def test_an_older_file_stays_without_a_lidar(tmp_path: Path) -> None:
-    old = tmp_path / "old.mcap"
-    old.write_text("dear")
-    with pytest.raises(g4lidar.Error):
-        g4lidar.open(str(tmp_path / "nosuch"), record=old, overwrite=True)
-    assert old.read_text() == "dear"
-    assert [each.name for each in tmp_path.iterdir()] == ["old.mcap"]
-
-
 def test_a_closed_writer_refuses_more(tmp_path: Path, g4_lidar: g4lidar.Lidar) -> None:
     g4_lidar.start()
     scan = g4_lidar.next_scan()

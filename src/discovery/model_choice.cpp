@@ -83,8 +83,10 @@ std::vector<const model*> models_that_fit(const lidar_signs& seen) {
   const auto is_near = [near](const model& row) {
     return std::ranges::find(near, &row) != near.end();
   };
-  const auto first = std::ranges::find(near, usual_model(is_near, usual_kind::at_its_rate));
-  if (first != near.end()) std::rotate(near.begin(), first, first + 1);
+  const model* const usual = usual_model(is_near, usual_kind::at_its_rate);
+  const auto first = std::ranges::find(near, usual);
+  const bool is_usual = usual != nullptr && usual->usual >= usual_kind::at_its_rate;
+  if (is_usual) std::rotate(near.begin(), first, first + 1);
   return found;
 }
 

@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "g4lidar/export/printable.hpp"
 #include "transport/text_file.hpp"
 #include "words.hpp"
 

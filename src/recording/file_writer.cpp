@@ -48,13 +48,13 @@ recording_writer::file_writer::file_writer(mcap::mcap_file first, std::string_vi
 
 template <class Work>
 result<void> recording_writer::file_writer::guarded(Work work) noexcept {
-  if (stage_ == stage::closed) return {};
+  if (is_closed_) return {};
   try {
     auto done = work();
     trouble_.add(done);
     return done;
   } catch (const std::bad_alloc&) {
-    result<void> failed = failure(task::writing, problem::system, path(), ENOMEM);
+    result<void> failed = failure(task::writing, problem::system, file_->path(), ENOMEM);
     lose_chunk();
     trouble_.add(failed);
     return failed;
@@ -86,7 +86,7 @@ void recording_writer::file_writer::put(topic id, std::int64_t time_ns, std::siz
 
 void recording_writer::file_writer::put_bytes(direction way, bytes data,
                                               std::int64_t time_ns) noexcept {
-  if (stage_ == stage::closed) return;
+  if (is_closed_) return;
   payload_.add(way, data);
   const bool is_from_device = way == direction::from_device;
   (is_from_device ? counts_.bytes_from_device : counts_.bytes_to_device) += data.size();
@@ -110,7 +110,7 @@ void recording_writer::file_writer::event(const recorded_event& what) noexcept {
     if (options_.keep_odometry) odometry(what.odometry);
     return;
   }
-  if (what.what == recorded_event::kind::begun) keep();
+  if (what.what == recorded_event::kind::begun) place().keep();
   if (what.what !=
       recorded_event::kind::state) {  // each chunk begins with one, of the state before
     put(topic::events, what.time_ns, 0,
@@ -120,7 +120,7 @@ void recording_writer::file_writer::event(const recorded_event& what) noexcept {
 }
 
 void recording_writer::file_writer::scan(const g4lidar::scan& revolution) noexcept {
-  if (stage_ == stage::closed || revolution.points.empty()) return;
+  if (is_closed_ || revolution.points.empty()) return;
   const std::span<const point> points = revolution.points;
   message_header header{.frame_id = options_.frame_id,
                         .duration_ns = revolution.duration_ns,
@@ -166,8 +166,7 @@ void recording_writer::file_writer::odometry(const stamped_odometry& what) noexc
       values, [](double value) { return std::fabs(value) <= max_odometry_value; });
   const bool has_begun =
       transport_.is_known || counts_.bytes_from_device + counts_.bytes_to_device > 0;
-  if (stage_ == stage::closed || !is_possible || !has_begun || !has_channel(topic::odometry))
-    return;
+  if (is_closed_ || !is_possible || !has_begun || !has_channel(topic::odometry)) return;
   ++counts_.odometry;
   put(topic::odometry, what.time_ns, 0, [&](mcap::record_text& out) {
     put_odometry({.stamp_ns = wall_.at(what.time_ns),
@@ -200,7 +199,7 @@ void recording_writer::file_writer::metadata(
 
 result<void> recording_writer::file_writer::take_model(const model& which) {
   const std::string_view now = channels_.model().word;
-  if (stage_ == stage::closed || now == which.word) return {};
+  if (is_closed_ || now == which.word) return {};
   const bool has_begun = transport_.is_known || !chunk_.is_empty() || !file_->is_empty();
   if (options_.model != nullptr || has_begun) {
     return failure(
@@ -228,7 +227,7 @@ void recording_writer::file_writer::begin_chunk(std::int64_t time_ns) {
 result<bytes> recording_writer::file_writer::pack() {
   if (!packer_) return bytes{};
   const bytes packed = packer_->pack(chunk_.records());
-  if (packed.empty()) return failure(task::writing, problem::system, path(), ENOMEM);
+  if (packed.empty()) return failure(task::writing, problem::system, file_->path(), ENOMEM);
   return packed;
 }
 
@@ -242,7 +241,7 @@ result<void> recording_writer::file_writer::end_chunk() {
     const bool is_full = options_.rotate_bytes != 0 && after > options_.rotate_bytes;
     const std::int64_t rotate_ns = ns_of(options_.rotate_time);
     const bool is_old = rotate_ns != 0 && covered_.length_ns() >= rotate_ns;
-    const bool may_rotate = stage_ != stage::attempt && file_->has_chunks();
+    const bool may_rotate = place().is_kept() && file_->has_chunks();
     if (may_rotate && (is_full || is_old)) rotated = rotate();
   }
   if (packed && options_.mount && !file_->has_chunks()) {
@@ -256,7 +255,7 @@ result<void> recording_writer::file_writer::end_chunk() {
   chunk_.clear();
   ++counts_.chunks;
   covered_.keep_chunk();
-  if (rotated) rotated = settle();
+  if (rotated) rotated = file_->settle();
   if (rotated) trouble_.end();
   return rotated;
 }
@@ -298,6 +297,7 @@ result<void> recording_writer::file_writer::rotate() {
   };
   auto made = next();
   if (!made) return tl::unexpected(made.error());
+  made->place().keep();
   auto ended = end_file(false);
   ++counts_.files;
   closed_bytes_ += file_->size();
@@ -320,15 +320,15 @@ result<void> recording_writer::file_writer::end_file(bool is_only_one) {
   }
   auto done = file_->add_metadata(mcap::digest_metadata, words);
   if (auto closed = file_->close(); done) done = closed;
-  if (auto settled = settle(); done) done = settled;
+  if (auto settled = file_->settle(); done) done = settled;
   return done;
 }
 
 result<void> recording_writer::file_writer::flush() noexcept {
-  keep();
+  place().keep();
   return guarded([&]() -> result<void> {
     auto ended = end_chunk();
-    auto settled = settle();
+    auto settled = file_->settle();
     return ended ? settled : ended;
   });
 }
@@ -339,8 +339,8 @@ result<void> recording_writer::file_writer::close() noexcept {
     auto closed = end_file(counts_.files == 1);
     return ended ? closed : ended;
   });
-  file_->place().drop_if_waiting();
-  stage_ = stage::closed;
+  place().drop_if_waiting();
+  is_closed_ = true;
   return done;
 }
 

@@ -77,16 +77,8 @@ class recording_writer::file_writer {
   /// What sends the bytes: the file begins again if it is empty and for another model.
   [[nodiscard]] result<void> take_model(const model& which);
   void set_wall_clock(std::int64_t ahead_ns) noexcept { wall_.set(ahead_ns); }
-  /// The file is to replace an older one: there is more in it than attempts to open a lidar.
-  void keep() noexcept {
-    if (stage_ == stage::attempt) stage_ = stage::kept;
-  }
   result<void> flush() noexcept;
   result<void> close() noexcept;
-  void discard() noexcept {
-    stage_ = stage::closed;
-    file_->place().remove();
-  }
 
   [[nodiscard]] std::optional<error> take_error() noexcept { return trouble_.take(); }
   [[nodiscard]] recording_counts counts() const noexcept {
@@ -97,7 +89,8 @@ class recording_writer::file_writer {
   [[nodiscard]] recorded_digest digest() const noexcept {
     return {payload_.value(), points_.count() > 0 ? points_.value() : 0, points_.count()};
   }
-  [[nodiscard]] std::string_view path() const noexcept { return file_->path(); }
+  /// The current file. keep(): there is more in it than attempts to open a lidar.
+  [[nodiscard]] new_file& place() noexcept { return file_->place(); }
 
  private:
   /// If there is no memory, the chunk is lost.
@@ -113,13 +106,6 @@ class recording_writer::file_writer {
   [[nodiscard]] result<void> rotate();
   [[nodiscard]] result<void> end_file(bool is_only_one);
   void lose_chunk() noexcept;
-  /// Replaces an older file when there is something to replace it by.
-  [[nodiscard]] result<void> settle() noexcept {
-    const bool has_something = stage_ == stage::kept && file_->has_chunks();
-    return has_something ? file_->place().take_place() : result<void>();
-  }
-
-  enum class stage : std::uint8_t { attempt, kept, closed };
 
   recording_options options_;
   numbered_paths further_;
@@ -128,7 +114,7 @@ class recording_writer::file_writer {
   mcap::open_chunk chunk_;
   std::optional<mcap::packer> packer_;
   scan_ranges ranges_;
-  stage stage_ = stage::attempt;
+  bool is_closed_ = false;
 
   mcap::transport_state transport_;
   std::optional<recorded_device> device_;

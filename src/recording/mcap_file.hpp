@@ -77,7 +77,11 @@ class mcap_file {
   [[nodiscard]] result<void> add_metadata(std::string_view name, const word_map& words);
   /// Writes the summary; nothing can be added afterwards.
   [[nodiscard]] result<void> close();
-  /// The file itself: to let it take its place, or to remove it.
+  /// Replaces an older file when there is something to replace it by.
+  [[nodiscard]] result<void> settle() noexcept {
+    return has_chunks() ? file_.take_place() : result<void>();
+  }
+  /// The file itself.
   [[nodiscard]] new_file& place() noexcept { return file_; }
 
   /// Writes the records before the chunks; whatever was written before is dropped.

@@ -58,7 +58,7 @@ result<new_file> new_file::create_beside(const std::string& path, unsigned mode)
 }
 
 result<void> new_file::take_place() noexcept {
-  if (temporary_.empty() || !fd_) return {};
+  if (temporary_.empty() || !is_kept_ || !fd_) return {};
   if (::rename(temporary_.c_str(), target_.c_str()) != 0) return failed(task::writing, path_);
   temporary_.clear();
   return {};

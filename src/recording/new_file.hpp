@@ -25,6 +25,9 @@ class new_file {
   /// Where it is, or is to be.
   [[nodiscard]] const std::string& path() const noexcept { return path_; }
 
+  /// It is worth to replace an older one. Without that take_place() does nothing.
+  void keep() noexcept { is_kept_ = true; }
+  [[nodiscard]] bool is_kept() const noexcept { return is_kept_; }
   /// Replaces the older file, if there is one and it has not been replaced.
   [[nodiscard]] result<void> take_place() noexcept;
   /// Removes it if it has not replaced the older file.
@@ -40,6 +43,7 @@ class new_file {
   std::string path_;
   std::string temporary_{};  // its path until take_place(); empty: it is at its place
   std::string target_{};     // what it replaces: behind symbolic links
+  bool is_kept_ = false;
 };
 
 /// Whether both names lead to one file on disk, by device and inode.

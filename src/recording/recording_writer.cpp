@@ -107,7 +107,7 @@ result<recording_writer> recording_writer::create(std::string_view path,
 template <class Call>
 void recording_writer::keep(Call call) noexcept {
   if (!made_) return;
-  made_->keep();
+  made_->place().keep();
   call(*made_);
 }
 
@@ -142,7 +142,9 @@ void recording_writer::set_wall_clock(std::int64_t ahead_ns) noexcept {
 result<void> recording_writer::flush() noexcept { return made_ ? made_->flush() : result<void>(); }
 result<void> recording_writer::close() noexcept { return made_ ? made_->close() : result<void>(); }
 void recording_writer::discard() noexcept {
-  if (made_) made_->discard();
+  if (!made_) return;
+  made_->place().remove();
+  static_cast<void>(made_->close());
 }
 std::optional<error> recording_writer::take_error() noexcept {
   return made_ ? made_->take_error() : std::nullopt;
@@ -154,7 +156,7 @@ recorded_digest recording_writer::digest() const noexcept {
   return made_ ? made_->digest() : recorded_digest{};
 }
 std::string_view recording_writer::path() const noexcept {
-  return made_ ? made_->path() : std::string_view();
+  return made_ ? std::string_view(made_->place().path()) : std::string_view();
 }
 
 }  // namespace g4lidar

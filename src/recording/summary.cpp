@@ -14,7 +14,10 @@ struct budget {
   std::uint64_t bytes;
 
   [[nodiscard]] bool spend(std::size_t size) noexcept {
-    if (records == 0 || bytes < size) return false;
+    if (records == 0 || bytes < size) {
+      records = 0;  // nothing more
+      return false;
+    }
     --records;
     bytes -= size;
     return true;

@@ -158,7 +158,7 @@ result<std::unique_ptr<connector>> recorded(std::unique_ptr<connector> from,
   if (!into.made_) return from;  // a moved-from writer records nothing
   const played_file* const played = file_of(*from);
   if (played != nullptr &&
-      are_one_file(std::string(played->items().path()), std::string(into.made_->path()))) {
+      are_one_file(std::string(played->items().path()), into.made_->place().path())) {
     return failure(task::opening, problem::bad_option,
                    "the file of the recording is also its source");
   }

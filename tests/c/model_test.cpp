@@ -73,4 +73,39 @@ TEST_F(CModel, RecordingsStateIt) {
   EXPECT_NE(std::string(why_.message).find("t-mini-pro"), std::string::npos) << why_.message;
 }
 
+// The zero packet of each revolution is at 0 degrees.
+TEST_F(CModel, TheOffsetOfZeroIsGiven) {
+  const auto sample = [](unsigned, unsigned, unsigned) { return reference::wire_sample{0, 1000}; };
+  const auto tg = reference::revolutions_of(reference::wire_format_of("tg15"), 6, 30, 1, sample);
+  std::ofstream(raw_, std::ios::binary)
+      .write(reinterpret_cast<const char*>(tg.data.data()),
+             static_cast<std::streamsize>(tg.data.size()));
+  g4lidar_options options = defaults();
+  options.device = raw_.c_str();
+  options.model = "tg15";
+  for (const bool is_given : {false, true}) {
+    options.has_zero_angle = is_given;
+    options.zero_angle_cdeg = 12'300;
+    g4lidar_lidar* made = nullptr;
+    ASSERT_EQ(g4lidar_open_with(&options, &made, &why_), G4LIDAR_OK) << why_.message;
+    const lidar it(made);
+    ASSERT_EQ(g4lidar_start(made, &why_), G4LIDAR_OK) << why_.message;
+    const g4lidar_scan* scan = nullptr;
+    ASSERT_EQ(g4lidar_next_scan(made, 1000, &scan, &why_), G4LIDAR_OK) << why_.message;
+    EXPECT_NEAR(scan->points[0].angle_deg, is_given ? 123.0F : 0.0F, 0.01F);
+    bool is_said = false;
+    g4lidar_event event;
+    while (g4lidar_next_event(made, &event) == G4LIDAR_OK) {
+      is_said = is_said || event.kind == G4LIDAR_EVENT_NO_ZERO_ANGLE;
+    }
+    EXPECT_EQ(is_said, !is_given);
+  }
+  options.zero_angle_cdeg = 36'001;
+  g4lidar_lidar* made = nullptr;
+  EXPECT_EQ(g4lidar_open_with(&options, &made, &why_), G4LIDAR_BAD_OPTION);
+  options.zero_angle_cdeg = 0;
+  options.model = "g4";
+  EXPECT_EQ(g4lidar_open_with(&options, &made, &why_), G4LIDAR_NOT_SUPPORTED);
+}
+
 }  // namespace

@@ -99,8 +99,9 @@ TEST_F(Escaping, WordsOfTheCommandLine_AreOneShortLine) {
                                  {"sim", "--device"},
                                  {"sim", "--fault"},
                                  {}}) {
-    for (const std::string& word : {"a\nb=" + long_word, "a\nb", "sim:?model=a\nb" + long_word,
-                                    "tcp:a\nb" + long_word + ":1"}) {
+    for (const std::string& word :
+         std::vector<std::string>{"a\nb=" + long_word, "a\nb", "sim:?model=a\nb" + long_word,
+                                  "tcp:a\nb" + long_word + ":1"}) {
       words all = arguments;
       all.push_back(word);
       const outcome done = run(all);

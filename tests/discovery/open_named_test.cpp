@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
-// lidar::open() with a model: at all rates that it has, with all numbers that it reports, and while it scans.
+// lidar::open() with a model: at all rates that it has, and with all numbers that it reports.
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <optional>
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -16,8 +15,6 @@
 
 namespace g4lidar::test {
 namespace {
-
-using sim::fault_kind;
 
 sim::device_options options_of(std::string_view word, std::uint32_t baud = 0) {
   sim::device_options options;
@@ -59,8 +56,9 @@ TEST_P(OpenAtTheOtherRate, OfASimulatedSource_IsFound) {
 }
 
 TEST_P(OpenAtTheOtherRate, Silence_NamesTheModelAndTheRates) {
-  const searched done = search_at(options_of(GetParam()), {.model = model_named(GetParam())},
-                                  {sim::make_fault(fault_kind::deaf)});
+  sim::device_options options = options_of(GetParam());
+  options.dtr_starts_by = sim::dtr_start::pulse;
+  const searched done = search_at(options, {.model = model_named(GetParam())}, {}, true);
   ASSERT_FALSE(done.lidar);
   EXPECT_EQ(done.lidar.error().code(), problem::silence);
   const std::string wanted =
@@ -126,42 +124,6 @@ TEST(SharedNumber, OfANamedModel_IsAccepted) {
     EXPECT_EQ(got->model->turn_deg, 180);
   }
 }
-
-/// A two-way lidar that a dead host has left scanning.
-class NamedLeftScanning : public testing::TestWithParam<std::string_view> {};
-
-TEST_P(NamedLeftScanning, IsStopped_AndReported) {
-  auto served =
-      sim::background_pty::open(sim::device(sim::built_in_world(), options_of(GetParam()),
-                                            std::vector{sim::make_fault(fault_kind::scanning)}));
-  ASSERT_TRUE(served);
-  auto opened = lidar::open(served->path() + "?model=" + std::string(GetParam()));
-  ASSERT_TRUE(opened) << opened.error().message();
-  const auto event = opened->next_event();
-  ASSERT_TRUE(event);
-  EXPECT_EQ(event->what, lidar_event::kind::found_scanning);
-  EXPECT_FALSE(opened->next_event()) << "it is reported once";
-  served->with([](sim::device& simulated, std::int64_t) { EXPECT_FALSE(simulated.is_scanning()); });
-}
-
-TEST_P(NamedLeftScanning, AnIdleOne_IsNotReported) {
-  auto served =
-      sim::background_pty::open(sim::device(sim::built_in_world(), options_of(GetParam())));
-  ASSERT_TRUE(served);
-  auto opened = lidar::open(served->path() + "?model=" + std::string(GetParam()));
-  ASSERT_TRUE(opened) << opened.error().message();
-  EXPECT_FALSE(opened->next_event());
-}
-
-std::vector<std::string_view> two_way_models() {
-  std::vector<std::string_view> words;
-  for (const model& each : models) {
-    if (each.link == link_kind::two_way) words.push_back(each.word);
-  }
-  return words;
-}
-
-INSTANTIATE_TEST_SUITE_P(Models, NamedLeftScanning, testing::ValuesIn(two_way_models()), test_name);
 
 }  // namespace
 }  // namespace g4lidar::test

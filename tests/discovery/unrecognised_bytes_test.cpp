@@ -27,16 +27,18 @@ using octets = std::vector<std::uint8_t>;
 /// Answers the command 90 with these bytes, or everything with itself; in virtual time.
 class answering_port final : public transport {
  public:
-  explicit answering_port(octets answer) : answer_(std::move(answer)) {}
+  using clock = std::shared_ptr<std::int64_t>;
+  explicit answering_port(octets answer, clock now = std::make_shared<std::int64_t>(1))
+      : answer_(std::move(answer)), now_ns_(std::move(now)) {}
 
   result<received> read(std::span<std::uint8_t> out, std::int64_t deadline_ns) noexcept override {
     const std::size_t count = std::min(out.size(), waiting_.size());
-    if (count == 0) now_ns_ = std::max(now_ns_, deadline_ns);
-    if (count == 0) return received{0, now_ns_};
-    now_ns_ += 1'000'000;
+    if (count == 0) *now_ns_ = std::max(*now_ns_, deadline_ns);
+    if (count == 0) return received{0, *now_ns_};
+    *now_ns_ += 1'000'000;
     std::copy_n(waiting_.begin(), count, out.begin());
     waiting_.erase(waiting_.begin(), waiting_.begin() + static_cast<std::ptrdiff_t>(count));
-    return received{count, now_ns_};
+    return received{count, *now_ns_};
   }
   result<void> write(bytes data, std::int64_t /*deadline_ns*/) noexcept override {
     const bool is_question = std::ranges::find(data, 0x90) != data.end();
@@ -49,10 +51,10 @@ class answering_port final : public transport {
     return true;
   }
   result<void> pause(std::int64_t deadline_ns) noexcept override {
-    now_ns_ = std::max(now_ns_, deadline_ns);
+    *now_ns_ = std::max(*now_ns_, deadline_ns);
     return {};
   }
-  [[nodiscard]] std::int64_t now_ns() const noexcept override { return now_ns_; }
+  [[nodiscard]] std::int64_t now_ns() const noexcept override { return *now_ns_; }
   void wake() noexcept override {}
   [[nodiscard]] std::string_view name() const noexcept override { return "port"; }
   [[nodiscard]] std::uint32_t baud() const noexcept override { return baud_; }
@@ -60,7 +62,7 @@ class answering_port final : public transport {
  private:
   octets answer_;
   octets waiting_;
-  std::int64_t now_ns_ = 0;
+  clock now_ns_;
   std::uint32_t baud_ = 230'400;
 };
 
@@ -68,14 +70,15 @@ class answering_connector final : public connector {
  public:
   explicit answering_connector(octets answer) : answer_(std::move(answer)) {}
   [[nodiscard]] result<std::unique_ptr<transport>> connect() noexcept override {
-    return std::make_unique<answering_port>(answer_);
+    return std::make_unique<answering_port>(answer_, now_ns_);
   }
-  [[nodiscard]] std::int64_t now_ns() const noexcept override { return 0; }
+  [[nodiscard]] std::int64_t now_ns() const noexcept override { return *now_ns_; }
   [[nodiscard]] bool pause(std::int64_t) noexcept override { return true; }
   void wake() noexcept override {}
 
  private:
   octets answer_;
+  answering_port::clock now_ns_ = std::make_shared<std::int64_t>(1);
 };
 
 struct sample {

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "core/saturating.hpp"
 #include "driver/setup_sequence.hpp"
+#include "g4lidar/detail/saturating.hpp"
 #include "g4lidar/lidar.hpp"
 #include "support/virtual_transport.hpp"
 
@@ -169,15 +169,18 @@ TEST(Losses, LongestAndShortestTimeout_AreAccepted) {
 }
 
 TEST(Saturating, Sum_EndsAtTheLastTime) {
+  using detail::saturating_add;
+  using detail::saturating_sub;
   constexpr std::int64_t most = std::numeric_limits<std::int64_t>::max();
   constexpr std::int64_t least = std::numeric_limits<std::int64_t>::min();
   static_assert(saturating_add(most, 1) == most && saturating_add(least, -1) == least);
   static_assert(saturating_sub(most, -1) == most && saturating_sub(least, 1) == least);
   static_assert(saturating_sub(0, least) == most && saturating_add(least, most) == -1);
   static_assert(saturating_add(40, 2) == 42 && saturating_sub(40, -2) == 42);
-  static_assert(saturating_ns(1e300) == most && saturating_ns(-1e300) == least);
-  static_assert(saturating_ns(std::numeric_limits<double>::quiet_NaN()) == 0);
-  EXPECT_EQ(saturating_ns(42.9), 42);
+  static_assert(detail::saturated<std::int64_t>(1e300) == most &&
+                detail::saturated<std::int64_t>(-1e300) == least);
+  static_assert(detail::saturated<std::int64_t>(std::numeric_limits<double>::quiet_NaN()) == 0);
+  EXPECT_EQ(detail::saturated<std::int64_t>(42.9), 42);
 }
 
 /// Every step at once: a bounded list would drop some of them.

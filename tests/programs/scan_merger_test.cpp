@@ -40,7 +40,7 @@ class MergedTimes : public testing::Test {
  protected:
   /// One revolution of each of two lidars at the same time, where `path` is known.
   std::vector<point> merged(deskewing how, const std::vector<stamped_odometry>& path = {}) {
-    scan_merger merger(how, {{.name = "front"}, {.name = "rear"}}, "in the test");
+    scan_merger merger(how, {{"front", "", {}}, {"rear", "", {}}}, "in the test");
     for (const stamped_odometry& each : path) merger.add(each);
     const std::vector<point> points = revolution();
     g4lidar::scan source{};

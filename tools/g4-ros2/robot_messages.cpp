@@ -2,10 +2,10 @@
 #include "robot_messages.hpp"
 
 #include <algorithm>
-#include <cstdlib>
 #include <utility>
 
 #include <messages.h>
+#include "g4lidar/detail/saturating.hpp"
 #include "g4lidar/message/ros_messages.hpp"
 #include "scan_messages.hpp"
 
@@ -60,7 +60,9 @@ void robot_messages::publish(const stamped_odometry& at, std::int64_t stamp_ns) 
 }
 
 void robot_messages::publish_clock(std::int64_t now_ns) {
-  if (!clock_ || !clock_->is_wanted() || std::abs(now_ns - clock_ns_) < clock_step_ns) return;
+  const std::int64_t since_ns = g4lidar::detail::saturating_sub(now_ns, clock_ns_);
+  if (!clock_ || !clock_->is_wanted() || (since_ns > -clock_step_ns && since_ns < clock_step_ns))
+    return;
   clock_ns_ = now_ns;
   message_.clear();
   put_clock(now_ns, message_);

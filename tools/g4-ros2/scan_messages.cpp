@@ -3,6 +3,8 @@
 
 #include <utility>
 
+#include "g4lidar/detail/saturating.hpp"
+
 namespace g4_tool {
 
 std::unique_ptr<dds::publisher> publisher_of(dds::bus& on, std::string_view name_space,
@@ -26,7 +28,7 @@ scan_messages::scan_messages(dds::bus& on, const ros2_options& options, std::str
 }
 
 message_header scan_messages::header_of(const model& which, const scan_times& when) const {
-  return {.stamp_ns = when.first_ns + when.ahead_ns,
+  return {.stamp_ns = g4lidar::detail::saturating_add(when.first_ns, when.ahead_ns),
           .frame_id = frame_id_,
           .duration_ns = when.duration_ns,
           .order = options_.order,
@@ -45,7 +47,8 @@ void scan_messages::publish_scan(const scan& for_grid, const grid_options& grid,
 
 void scan_messages::publish_points(const scan& kept, const scan_times& when) {
   message_header header = header_of(*kept.model, when);
-  if (!kept.empty()) header.stamp_ns = cloud_time_ns(kept.points) + when.ahead_ns;
+  if (!kept.empty())
+    header.stamp_ns = g4lidar::detail::saturating_add(cloud_time_ns(kept.points), when.ahead_ns);
   message_.clear();
   put_point_cloud2(kept.points, header, message_);
   points_->publish(message_);

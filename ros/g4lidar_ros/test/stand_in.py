@@ -31,8 +31,8 @@ class StandIn(Node):
             self.state = "unconfigured"
             self.events = self.create_publisher(TransitionEvent, "~/transition_event", 10)
             self.service = self.create_service(ChangeState, "~/change_state", self.change)
-        values = self.get_parameters([each for each in self.list_parameters([], 0).names if "." not in each])
-        record("parameters", {each.name: each.value for each in values})
+        values = self.get_parameters_by_prefix("")
+        record("parameters", {name: each.value for name, each in values.items() if "." not in name})
 
     def change(self, request, response):
         way = WAYS.get(request.transition.id)

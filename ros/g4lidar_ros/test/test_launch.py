@@ -125,8 +125,8 @@ class TestLaunch(unittest.TestCase):
 
     def test_two_simulated_lidars(self):
         self.start("two_lidars.launch.py", "sim:=true", "frequency:=9.0", "rear_frequency:=8.0", "front_range_max:=5.0")
-        self.wait_for_scan("/front/scan", lambda scan: abs(scan.scan_time - 1 / 9.0) < 0.005 and scan.range_max == 5.0)
-        self.wait_for_scan("/rear/scan", lambda scan: abs(scan.scan_time - 1 / 8.0) < 0.005 and scan.range_max == 16.0
+        self.wait_for_scan("/front/scan", lambda scan: abs(scan.scan_time - 1 / 9.0) < 0.005 and abs(scan.range_max - 5.0) < 1e-5)
+        self.wait_for_scan("/rear/scan", lambda scan: abs(scan.scan_time - 1 / 8.0) < 0.005 and abs(scan.range_max - 16.0) < 1e-5
                            and scan.header.frame_id == "rear_laser")
 
     def test_two_lidars_need_names(self):

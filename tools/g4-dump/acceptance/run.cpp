@@ -69,7 +69,7 @@ class runner {
       throw;
     }
     leave_as_it_was();
-    return {std::move(of_.results), std::move(failure_)};
+    return {std::move(of_.results), failure_};
   }
 
  private:

@@ -59,11 +59,6 @@ struct expected_device {
   /// What sends the bytes; null: as a file shows, or searched.
   const g4lidar::model* model = nullptr;
   std::optional<g4lidar::zero_angle> zero;  ///< Of --zero-angle.
-
-  [[nodiscard]] std::uint32_t rate() const noexcept {
-    if (baud != 0) return baud;
-    return (model != nullptr ? *model : g4lidar::g4_model).bauds[0];
-  }
 };
 
 struct common_options {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-// The files of the command that runs. What it reads is noted, and nothing that it writes, replaces or removes is among it.
+// The files of the command that runs: nothing that it writes, replaces or removes is among those that it reads.
 #pragma once
 
 #include <string>
 
 namespace g4_tool {
 
-/// Notes that the command reads what this word names: a file or a source, also as NAME=SOURCE. Each row of the table of
+/// The command reads what this word names: a file or a source, also as NAME=SOURCE. Each row of the table of
 /// options whose completion is `input` or `source` does that by itself. Standard input counts always.
 void add_input(const std::string& word);
 /// The word is an output: takes one add_input() back.
