@@ -46,8 +46,8 @@ std::optional<request> change_of(int setting, std::int32_t wanted) noexcept {
   const auto value = value_of(*row, wanted);
   if (value) return change_to(*value);
   constexpr std::int32_t none = 0xFFFF;
-  const bool is_said = row->type == setting_type::decimal && wanted >= 0 && wanted < none;
-  return request{row->change, static_cast<std::uint16_t>(is_said ? wanted : none)};
+  const bool is_reported = row->type == setting_type::decimal && wanted >= 0 && wanted < none;
+  return request{row->change, static_cast<std::uint16_t>(is_reported ? wanted : none)};
 }
 
 std::optional<request> step_of(std::int32_t step_chz) noexcept {

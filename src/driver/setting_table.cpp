@@ -114,7 +114,7 @@ std::optional<answer> value_of(const setting_info& of, std::int32_t number) noex
 
 result<answer> value_in(const setting_info& of, std::string_view text, const model* which) {
   const std::string given = in_quotes(text);
-  // What the model does not have at all is refused by the lidar, which says so.
+  // What the model does not have at all is refused by the lidar.
   const bool is_known = which != nullptr && has_request(*which, of.change);
   const auto refused = [&](std::string why, bool is_of_model = true) {
     if (!of.unit.empty()) why.append(" ").append(of.unit);

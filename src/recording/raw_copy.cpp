@@ -69,7 +69,7 @@ void raw_copy::put_information(std::vector<std::uint8_t>& out) {
 }
 
 void raw_copy::put_zero(bool with_header, std::vector<std::uint8_t>& out) {
-  const auto tell = [&](std::size_t from) {
+  const auto report = [&](std::size_t from) {
     if (const auto made = response_view::from(bytes(out).subspan(from), true)) {
       reader_.take(event(*made), *which_);
     }
@@ -77,14 +77,14 @@ void raw_copy::put_zero(bool with_header, std::vector<std::uint8_t>& out) {
   std::size_t from = out.size();
   if (with_header) {
     append(out, layout_of(response_kind::scan_started).header);
-    tell(from);
+    report(from);
   }
   from = out.size();
   append(out, layout_of(response_kind::frequency).header);
   // NOLINTNEXTLINE(bugprone-unchecked-optional-access): it is missing
   const auto number = static_cast<std::uint32_t>(reply_of(*source_.zero.angle(), *reader_.like));
   for (unsigned i = 0; i < 4; ++i) out.push_back(static_cast<std::uint8_t>(number >> 8U * i));
-  tell(from);
+  report(from);
 }
 
 void raw_copy::received(bytes data, bool is_wanted, std::vector<std::uint8_t>& out) {

@@ -93,12 +93,12 @@ TEST_F(CModel, TheOffsetOfZeroIsGiven) {
     const g4lidar_scan* scan = nullptr;
     ASSERT_EQ(g4lidar_next_scan(made, 1000, &scan, &why_), G4LIDAR_OK) << why_.message;
     EXPECT_NEAR(scan->points[0].angle_deg, is_given ? 123.0F : 0.0F, 0.01F);
-    bool is_said = false;
+    bool is_reported = false;
     g4lidar_event event;
     while (g4lidar_next_event(made, &event) == G4LIDAR_OK) {
-      is_said = is_said || event.kind == G4LIDAR_EVENT_NO_ZERO_ANGLE;
+      is_reported = is_reported || event.kind == G4LIDAR_EVENT_NO_ZERO_ANGLE;
     }
-    EXPECT_EQ(is_said, !is_given);
+    EXPECT_EQ(is_reported, !is_given);
   }
   options.zero_angle_cdeg = 36'001;
   g4lidar_lidar* made = nullptr;

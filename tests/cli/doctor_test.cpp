@@ -62,9 +62,9 @@ TEST_F(Doctor, GoesThroughAllStages) {
   const outcome done = examine("sim:");
   const std::vector<json> stages = stages_of(done);
   ASSERT_EQ(stages.size(), 13U) << done.out << done.err;
-  const std::vector<std::string> names{"port",    "permission", "holder", "baud_rate",
-                                       "answers", "identity",   "health", "motor",
-                                       "stream",  "rate",       "loss",   "returns", "usb_latency"};
+  const std::vector<std::string> names{
+      "port",  "permission", "holder", "baud_rate", "answers", "identity",   "health",
+      "motor", "stream",     "rate",   "loss",      "returns", "usb_latency"};
   for (std::size_t i = 0; i < names.size(); ++i) {
     EXPECT_EQ(stages[i].at("stage"), names[i]);
     if (names[i] == "usb_latency") {

@@ -80,7 +80,7 @@ TEST_F(ZeroAngleOption, RawBytesOfARecordingHaveIt) {
   }
 }
 
-TEST_F(ZeroAngleOption, WhereItIsMissing_ALineSaysSo) {
+TEST_F(ZeroAngleOption, WhereItIsMissing_ALineReportsIt) {
   record("sim:?model=tg15&zero_angle_cdeg=9000&fault=mute=93");
   convert("a.mcap", "a.bin");
   convert("a.bin", "b.mcap", {"--zero-angle", "90"});
@@ -155,7 +155,7 @@ TEST_F(FewBytes, OneOrTwoPacketsAreReadAndTheModelIsNamed) {
   }
 }
 
-TEST_F(FewBytes, ANumberOfAnotherModel_IsSaidWithBoth) {
+TEST_F(FewBytes, ANumberOfAnotherModel_IsReportedWithBoth) {
   const std::string file = path("scl.bin");
   const outcome made = run(
       {"record", "sim:?model=scl&model_id=4&ct_information=true&ct_crc=true&stray_before_zero=true",

@@ -83,11 +83,11 @@ TEST(Grid, AScan_IsTurnedAsItsModel_WhichHasTheLongestRange) {
     for (const float range_m : ranges_m) made.push_back(quarter_mm(range_m));
     return made;
   };
-  EXPECT_EQ(filled("x4"), (std::vector{65532L, 8000L, 4000L, 16000L}));
-  EXPECT_EQ(filled("t-mini-plus-sh"), (std::vector{262140L, 8000L, 4000L, 16000L}));
-  EXPECT_EQ(filled("g4"), (std::vector{4000L, 16000L, 65535L, 8000L}));
-  EXPECT_EQ(filled("g6"), (std::vector{4000L, 16000L, 131070L, 8000L}));
-  EXPECT_EQ(filled("tg30"), (std::vector{4000L, 16000L, 262140L, 8000L}));
+  EXPECT_EQ(filled("x4"), (std::vector{40000L, 8000L, 4000L, 16000L}));
+  EXPECT_EQ(filled("t-mini-plus-sh"), (std::vector{100000L, 8000L, 4000L, 16000L}));
+  EXPECT_EQ(filled("g4"), (std::vector{4000L, 16000L, 64000L, 8000L}));
+  EXPECT_EQ(filled("g6"), (std::vector{4000L, 16000L, 100000L, 8000L}));
+  EXPECT_EQ(filled("tg30"), (std::vector{4000L, 16000L, 120000L, 8000L}));
   // Points that are not in a scan: by the options, and by default as those of a G4.
   EXPECT_EQ(grid_of(points, 4, {.turn_deg = 0})[2], 1.0F);
   EXPECT_EQ(grid_of(points, 4)[0], 1.0F);

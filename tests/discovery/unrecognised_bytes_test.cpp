@@ -109,7 +109,7 @@ const std::vector<sample>& samples() {
 
 class BytesWithoutMeaning : public testing::TestWithParam<sample> {};
 
-TEST_P(BytesWithoutMeaning, SearchSaysSo) {
+TEST_P(BytesWithoutMeaning, SearchReportsThem) {
   answering_port port(GetParam().answer);
   const auto found = search(port, 3'000'000'000);
   ASSERT_FALSE(found);
@@ -119,7 +119,7 @@ TEST_P(BytesWithoutMeaning, SearchSaysSo) {
   EXPECT_THAT(found.error().message(), HasSubstr("at 230400, 115200, 128000, 512000, 153600 baud"));
 }
 
-TEST_P(BytesWithoutMeaning, NamedModelSaysSo) {
+TEST_P(BytesWithoutMeaning, NamedModelReportsThem) {
   const auto opened =
       lidar::open(std::make_unique<answering_connector>(GetParam().answer), {.model = &g4_model});
   ASSERT_FALSE(opened);
@@ -128,7 +128,7 @@ TEST_P(BytesWithoutMeaning, NamedModelSaysSo) {
   EXPECT_THAT(opened.error().message(), HasSubstr(GetParam().begin));
 }
 
-TEST_P(BytesWithoutMeaning, DoctorSaysSo) {
+TEST_P(BytesWithoutMeaning, DoctorReportsThem) {
   const auto stages = diagnose(std::make_unique<answering_port>(GetParam().answer), {});
   std::string remarks;
   for (const stage_report& each : stages) remarks += each.remark + '\n';

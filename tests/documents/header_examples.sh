@@ -8,6 +8,7 @@ set -euo pipefail
 list=$1
 directory=$2
 cd "$directory"
+# shellcheck disable=SC2016 # the dollars are those of awk
 find . -name '*.hpp' -o -name '*.h' | sort | sed 's#^\./##' | xargs awk -v list="$list" '
   function finish() {
     if (!inside) return

@@ -89,7 +89,7 @@ TEST_F(MergedTimes, OnAKnownPath_AreTheReference) {
   expect_deskewed_from(merged(deskewing::by_path, path), 0);
 }
 
-// Nobody wants it: no point is said to be without.
+// Nobody wants it: no point is flagged.
 TEST_F(MergedTimes, WithoutDeskewing_AreTheirOwnWithoutAFlag) {
   const std::vector<point> all = merged(deskewing::none);
   ASSERT_EQ(all.size(), 2U * count);

@@ -226,7 +226,7 @@ TEST_P(ZeroAngle, IsInARecordingOfRawBytes) {
   EXPECT_LT(std::abs(turned_deg(wanted.points, part.points)), 0.01);
 }
 
-TEST_P(ZeroAngle, ThatIsMissing_IsSaidAndCanBeGiven) {
+TEST_P(ZeroAngle, ThatIsMissing_IsReportedAndCanBeGiven) {
   const temporary_path file;
   const run_result without = live(source_of(GetParam(), 55.5, "&fault=mute=93"), file.text());
   EXPECT_TRUE(has(without, no_zero_angle));

@@ -39,7 +39,7 @@ const g4lidar::parameter* row_of(const std::string& name) {
 }
 
 /// What the lidar is to be set to; nothing: to nothing. Throws std::invalid_argument with the possible values.
-g4lidar::parameter_value wish_in(const g4lidar::parameter& of, const rclcpp::Parameter& given) {
+g4lidar::parameter_value wanted_in(const g4lidar::parameter& of, const rclcpp::Parameter& given) {
   if (given.get_parameter_value() == shown(of, {})) return {};
   const auto made = g4lidar::answer_of(*of.setting, value_of(given.get_parameter_value()));
   if (!made) throw std::invalid_argument(std::string(made.error().subject()));
@@ -151,7 +151,7 @@ session_options node_parameters::for_session() const {
   for (const g4lidar::parameter& each : g4lidar::all_parameters()) {
     if (each.setting == nullptr) continue;
     const std::string name(each.name);
-    const auto value = wish_in(each, node_.get_parameter(name));
+    const auto value = wanted_in(each, node_.get_parameter(name));
     if (value.index() == 0) continue;
     g4lidar::set_option(lidar, *g4lidar::answer_of(*each.setting, value));
     made.settings.emplace_back(name, value);
@@ -206,7 +206,7 @@ std::string node_parameters::refuse(const changes& wanted) {
       return name + ": it is a " + rclcpp::to_string(type) + ", and not a " + each.get_type_name();
     const g4lidar::parameter* const known = row_of(name);
     if (known != nullptr && known->setting != nullptr)
-      settings.emplace_back(name, wish_in(*known, each));
+      settings.emplace_back(name, wanted_in(*known, each));
     else if (known != nullptr || is_direction(name))
       touched.push_back(is_direction(name) ? "fov" : name);
   }

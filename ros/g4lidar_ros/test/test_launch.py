@@ -75,7 +75,7 @@ class TestLaunch(unittest.TestCase):
         return [each[key] for each in lines if key in each]
 
     def refused(self, file, *words):
-        """What a launch says that ends at once."""
+        """What a launch prints that ends at once."""
         done = subprocess.run(["ros2", "launch", "g4lidar_ros", file, *words], capture_output=True, text=True,
                               timeout=support.PATIENCE)
         self.assertNotIn("process started", done.stdout + done.stderr)

@@ -100,10 +100,10 @@ class ParameterTest(unittest.TestCase):
 
 
 @unittest.skipUnless(G4_DUMP, "SKIPPED: g4-dump is not installed")
-class TestWishes(ParameterTest):
+class TestWanted(ParameterTest):
     names = ("frequency", "sample_rate", "idle")
     states = tuple("device." + name for name in names)
-    wishes = {"frequency": "10.0", "sample_rate": "8000", "idle": "false"}
+    wanted = {"frequency": "10.0", "sample_rate": "8000", "idle": "false"}
 
     def check(self):
         self.wait_for_frequency(10.0)
@@ -111,9 +111,9 @@ class TestWishes(ParameterTest):
         self.assertTrue(support.wait_for(lambda: self.get(*self.states) == (10.0, 8000, "off")), self.get(*self.states))
 
     def test_a_file_over_resets_an_unplug_and_an_error(self):
-        port = os.path.join(DIRECTORY, "wishes")
+        port = os.path.join(DIRECTORY, "wanted")
         device = self.plug(port)
-        self.start("wishes", parameter_file({"source": port, **self.wishes}))
+        self.start("wanted", parameter_file({"source": port, **self.wanted}))
         self.assertEqual(self.get(*self.states), (0.0, 0, ""))  # it is not open
         self.go(*UP)
         self.check()
@@ -131,8 +131,8 @@ class TestWishes(ParameterTest):
         self.end(device)
         with open(port, "wb") as file:
             file.write(b"\x89MCAP0\r\n" + b"this is no recording\n" * 100)
-        self.assertFalse(self.watcher.change_state("/wishes/g4lidar", Transition.TRANSITION_CONFIGURE))
-        self.assertEqual(self.watcher.state("/wishes/g4lidar"), State.PRIMARY_STATE_UNCONFIGURED)
+        self.assertFalse(self.watcher.change_state("/wanted/g4lidar", Transition.TRANSITION_CONFIGURE))
+        self.assertEqual(self.watcher.state("/wanted/g4lidar"), State.PRIMARY_STATE_UNCONFIGURED)
         os.unlink(port)
         self.plug(port)
         self.go(*UP)
@@ -164,7 +164,7 @@ class TestWishes(ParameterTest):
 
     def test_the_state_is_reported_and_cannot_be_set(self):
         messages = self.watcher.collect(DiagnosticArray, "/diagnostics")
-        self.start("state", parameter_file({"source": "'sim:?serial=1234567890123456'", **self.wishes}))
+        self.start("state", parameter_file({"source": "'sim:?serial=1234567890123456'", **self.wanted}))
         self.go(*UP)
         self.check()
         self.assertEqual(self.get("device.serial_number"), "1234567890123456")

@@ -299,7 +299,9 @@ TEST(BackgroundReader, StartFails_HasTheError) {
 /// The time of `start` on a lidar that receives nothing from a time on at which it is open and not started.
 template <class Start>
 std::int64_t time_of_failed(Start&& start) {
-  const sim::fault faults[] = {sim::make_fault(sim::fault_kind::deaf, 1053 * ms)};
+  virtual_bench healthy;
+  EXPECT_TRUE(open_virtual(healthy));
+  const sim::fault faults[] = {sim::make_fault(sim::fault_kind::deaf, healthy.now_ns + ms)};
   virtual_bench bench({}, faults);
   auto lidar = open_virtual(bench);
   EXPECT_TRUE(lidar);

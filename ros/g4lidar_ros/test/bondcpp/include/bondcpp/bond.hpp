@@ -13,7 +13,8 @@ namespace bond {
 
 class Bond {  // NOLINT(readability-identifier-naming): the names of bondcpp
  public:
-  Bond(const std::string& topic, std::string id, const rclcpp_lifecycle::LifecycleNode::SharedPtr& node)
+  Bond(const std::string& topic, std::string id,
+       const rclcpp_lifecycle::LifecycleNode::SharedPtr& node)
       : id_(std::move(id)),
         node_(*node),
         publisher_(rclcpp::create_publisher<std_msgs::msg::String>(node, topic, rclcpp::QoS(10))) {}
