@@ -83,7 +83,7 @@ class running_state {
   void received(const reading& what, bytes data, std::int64_t now_ns) {
     const std::lock_guard hold(mutex_);
     now_ns_ = now_ns;
-    // A lidar that sends is not unplugged, also where no scan runs.
+    // A port that gives bytes is there, also where no scan runs.
     if (lost_ && stage_of(*lost_) == diagnostic_stage::port) back();
     scan_.received(what, data);
     follow_scan();

@@ -78,7 +78,7 @@ TEST(Turn, Grid) {
               HasSubstr("\n0,0,false,inf,1000.00,2000.00,3000.00\n"));
   EXPECT_THAT(
       output_of({"scan", "--grid", "4", "--frame", "robot", "-f", "csv", "--no-return", "max"}),
-      HasSubstr("\n0,0,false,10000.00,1000.00,2000.00,3000.00\n"));
+      HasSubstr("\n0,0,false,12000.00,1000.00,2000.00,3000.00\n"));
 }
 
 TEST(Turn, FiltersAndMasks) {

@@ -85,8 +85,9 @@ struct longest {
 
 TEST(LaserScan, TheLongestRangeIsTheLimitOfTheFilter_WithinThatOfTheModel) {
   constexpr float infinity = std::numeric_limits<float>::infinity();
-  const std::vector<point> nothing{{.angle_deg = 0.0F, .flags = point_flags::no_return},
-                                   {.angle_deg = 180.0F, .flags = point_flags::no_return}};
+  const std::vector<point> nothing{
+      {.angle_deg = 0.0F, .flags = point_flags::no_return},
+      {.angle_deg = 180.0F, .time_ns = 200, .flags = point_flags::no_return}};
   for (const auto& [limit_mm, word, expected_m] :
        {longest{0.0F, "g4", 16.0F}, longest{9000.0F, "g4", 9.0F}, longest{infinity, "g4", 16.0F},
         longest{100'000.0F, "x2", 8.0F}, longest{0.0F, "tg50", 50.0F},

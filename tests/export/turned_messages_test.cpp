@@ -110,7 +110,7 @@ TEST(TurnedMessages, TimeGrid_HasTheLongestRangeOfTheModel) {
   seen.points = none;
   std::array<float, 2> ranges{};
   static_cast<void>(fill_time_grid(seen, ranges, {.no_return = no_return_as::max}));
-  EXPECT_EQ(ranges[0], 30.0F);
+  EXPECT_FLOAT_EQ(ranges[0], 30.0F);
 }
 
 TEST(TurnedMessages, PointCloud2) {

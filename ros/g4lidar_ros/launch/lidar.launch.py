@@ -22,7 +22,7 @@ from launch_ros.parameter_descriptions import ParameterValue
 
 SHARE = get_package_share_directory("g4lidar_ros")
 DEFAULTS = os.path.join(SHARE, "config", "lidar.yaml")
-# The parameters that are also arguments: with the comments of their lines in that file. One that is not given stays as in the file.
+# The parameters that are also arguments, with the comments of that file. One that is not given stays as in the file.
 with open(DEFAULTS) as file:
     PARAMETERS = dict(re.findall(r"^    (\w+): .*?# (.*)", file.read(), re.M))
 

@@ -96,7 +96,6 @@ LidarNode::CallbackReturn LidarNode::on_configure(const rclcpp_lifecycle::State&
   }
   diagnostics_->follow(session_);
   parameters_->follow(session_);
-  session_->wait_unless_device();
   return session_->failure() ? CallbackReturn::ERROR : CallbackReturn::SUCCESS;
 }
 

@@ -102,11 +102,14 @@ void lidar_session::guard(Call call) noexcept {
   }
 }
 
-void lidar_session::wait_unless_device() {
-  if (g4lidar::kind_of_source(options_.lidar.device) == g4lidar::source_kind::device) return;
+g4lidar::result<void> lidar_session::start() {
+  auto started = reader_.start();
+  const auto kind = g4lidar::kind_of_source(options_.lidar.device);
+  if (!started || kind == g4lidar::source_kind::device) return started;
   std::unique_lock lock(mutex_);
   changed_.wait_for(
       lock, 1s, [this] { return is_ending_ || reader_.status().state != reader_state::opening; });
+  return started;
 }
 
 void lidar_session::rest(bool rests, std::chrono::nanoseconds longest) {

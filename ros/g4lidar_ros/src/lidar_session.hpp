@@ -49,10 +49,9 @@ class lidar_session final : private g4lidar::reader_listener {
   /// Stops the motor and closes the lidar.
   ~lidar_session() override;
 
-  /// Opens the lidar in the thread; its motor rests. Fails with system.
-  [[nodiscard]] g4lidar::result<void> start() { return reader_.start(); }
-  /// A file or a simulated lidar is open at once, or cannot be opened: waits until it is known, at most 1 s.
-  void wait_unless_device();
+  /// Opens the lidar in the thread; its motor rests. Does not wait for a device. A file or a simulated lidar is open at
+  /// once, or cannot be opened: waits until that is known, at most 1 s. Fails with system.
+  [[nodiscard]] g4lidar::result<void> start();
   /// Whether the motor is to stand; waits at most `longest` until it does.
   void rest(bool rests, std::chrono::nanoseconds longest = {});
   /// Makes settings, all or none: why not, or empty. Blocks until the lidar has answered; not while it is searched.

@@ -100,7 +100,7 @@ class ParameterTest(unittest.TestCase):
 
 
 @unittest.skipUnless(G4_DUMP, "SKIPPED: g4-dump is not installed")
-class TestWanted(ParameterTest):
+class TestSettings(ParameterTest):
     names = ("frequency", "sample_rate", "idle")
     states = tuple("device." + name for name in names)
     wanted = {"frequency": "10.0", "sample_rate": "8000", "idle": "false"}

@@ -6,8 +6,10 @@
 #include <algorithm>
 #include <array>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "rows.hpp"
 
@@ -81,10 +83,12 @@ void stream(subject& of, step_result& into) {
   into.add("most_samples", heard.most_samples);
   into.add("sample_rate_hz", heard.sample_rate_hz());
   into.add("frequency_hz", heard.frequency_hz());
-  if (const auto at = heard.directions.nearest())
-    into.add("shortest_mm", *heard.directions.range_mm(*at));
-  if (const auto at = heard.directions.farthest())
-    into.add("longest_mm", *heard.directions.range_mm(*at));
+  const auto add_range = [&](std::string name, std::optional<std::size_t> at) {
+    const auto range_mm = at ? heard.directions.range_mm(*at) : std::nullopt;
+    if (range_mm) into.add(std::move(name), *range_mm);
+  };
+  add_range("shortest_mm", heard.directions.nearest());
+  add_range("longest_mm", heard.directions.farthest());
   const bool reports = heard.reported_hz() > 0.0;
   if (heard.zero_packets > 2) into.add("reports_frequency", reports);
   if (reports) into.add("offset_hz", heard.frequency_hz() - heard.reported_hz());
