@@ -106,8 +106,8 @@ bool live_run::find_device() {
     }
   }
   add_failure(baud);
-  const bool is_silent =
-      found == first_contact::state::none && baud.diagnoses.empty() && !link_.is_cancelled();
+  const bool is_silent = found == first_contact::state::none && baud.diagnoses.empty() &&
+                         (!link_.is_over() || link_.failure());
   if (is_silent) {
     baud.outcome = stage_verdict::skipped;
     baud.remark = "Nothing arrived to judge it by.";

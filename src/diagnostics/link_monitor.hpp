@@ -135,7 +135,6 @@ class link_monitor {
   [[nodiscard]] std::int64_t now_ns() const noexcept { return transport_->now_ns(); }
   /// The error that ended the connection.
   [[nodiscard]] const std::optional<error>& failure() const noexcept { return error_; }
-  [[nodiscard]] bool is_cancelled() const noexcept { return cancelled_; }
   /// From now on the run cannot be cancelled: only the motor is to be stopped.
   void ignore_cancel() noexcept {
     is_cancelled_ = nullptr;

@@ -27,8 +27,6 @@ double held_back_limit_of_ms(std::uint32_t baud) noexcept {
   constexpr double usual_baud = 230'400.0;
   return held_back_limit_ms * std::max(1.0, usual_baud / baud);
 }
-/// Narrower sectors without a return are not reported.
-constexpr int least_blind_deg = 30;
 /// The amount of damage up to which there is only a warning.
 constexpr std::uint64_t few_events = 2;
 constexpr double few_lost = 0.002;
@@ -287,49 +285,6 @@ void report_loss(stage_log& log, const stream_statistics& measured, const model&
     if (lost < few_lost) loss.outcome = std::min(loss.outcome, stage_verdict::warn);
   }
   log.report(std::move(loss));
-}
-
-void report_returns(stage_log& log, const stream_statistics& measured, const device_snapshot& known,
-                    const model& wanted, const point_filter& directions) {
-  const return_map& seen = measured.tally().returns;
-  if (!seen.is_round()) {
-    return log.skip(diagnostic_stage::returns, "The lidar has not looked in each direction.");
-  }
-  stage_report report{.stage = diagnostic_stage::returns};
-  report.add("samples", seen.samples());
-  report.add("returns", seen.returns());
-  if (seen.returns() == 0) {
-    report.find(diagnosis::no_returns);
-    return log.report(std::move(report));
-  }
-  point_filter wished = directions;
-  wished.turn_deg = wanted.turn_deg;
-  const float zero_deg = known.zero ? static_cast<float>(known.zero->deg()) : 0.0F;
-  const auto bearing_of = [&](float seen_deg) {
-    return static_cast<float>(wrap_deg(seen_deg + zero_deg));
-  };
-  const auto arcs = seen.without_return(least_blind_deg, [&](float middle_deg) {
-    return wished.has_direction({.angle_deg = bearing_of(middle_deg)});
-  });
-  for (const direction_arc& arc : arcs) {
-    const auto in_words = [&](int degree) {
-      const float turned = bearing_of(static_cast<float>(degree));
-      return std::to_string(std::lround(bearing_deg(turned, wished.in, wanted.turn_deg)));
-    };
-    std::string from = in_words(arc.from_deg);
-    std::string to = in_words(arc.from_deg + arc.width_deg);
-    if (wished.in == frame::robot) std::swap(from, to);
-    report.add("nothing_from_deg", from);
-    report.add("nothing_to_deg", to);
-    report.remark +=
-        (report.remark.empty() ? "Nothing returned in " : "; in ") + from + " to " + to;
-  }
-  if (!arcs.empty()) {
-    report.remark +=
-        " degrees. If a part of the robot is there, leave the directions out with the option "
-        "ignore.";
-  }
-  log.report(std::move(report));
 }
 
 bool find_other_layout(stage_report& report, const layout_recogniser& seen, const model& wanted) {

@@ -25,18 +25,13 @@ constexpr std::int64_t information_ns = 600 * ms;
 /// One attempt to stop a scan, and a slow answer; or several.
 constexpr std::int64_t one_stop_ns = 700 * ms;
 constexpr std::int64_t stops_ns = 2'000 * ms;
-/// Between two questions whether it is cancelled.
-constexpr std::int64_t look_ns = 50 * ms;
+constexpr std::int64_t look_ns = 50 * ms;  // between two questions whether it is cancelled
 constexpr std::int64_t pulse_ns = 100 * ms;
 constexpr std::int64_t after_pulse_ns = 2'000 * ms;
 constexpr std::int64_t write_ns = 100 * ms;
 /// Fewer bytes in a time of listening are noise, or the end of a message.
 constexpr std::size_t stream_bytes = 32;
 
-/// The rates of all models: that of a G4, then those with the most users.
-constexpr std::array<std::uint32_t, 5> usual_rates{230'400, 115'200, 128'000, 512'000, 153'600};
-/// Of variants and other products; tried if something sends at all usual rates, and nothing fits.
-constexpr std::array<std::uint32_t, 5> unusual_rates{150'000, 214'285, 256'000, 460'800, 921'600};
 /// Of lidars of the same manufacturer with line sensors: A5 A5 A5 A5, and an address.
 constexpr std::uint8_t foreign_start = 0xA5;
 

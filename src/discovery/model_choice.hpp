@@ -13,6 +13,13 @@
 
 namespace g4lidar {
 
+/// The rates of all models: that of a G4, then those with the most users.
+inline constexpr std::array<std::uint32_t, 5> usual_rates{230'400, 115'200, 128'000, 512'000,
+                                                          153'600};
+/// Of variants and other products; tried if something sends at all usual rates, and nothing fits.
+inline constexpr std::array<std::uint32_t, 5> unusual_rates{150'000, 214'285, 256'000, 460'800,
+                                                            921'600};
+
 /// What is known about a lidar at a port.
 struct lidar_signs {
   std::uint32_t baud = 0;  ///< Of the port.

@@ -73,7 +73,7 @@ error live_driver::silence_error() const {
   constexpr std::uint64_t of_boot_texts = 1000;
   const std::uint64_t skipped = pipeline_.counts().stream.skipped_bytes() - skipped_at_begin_;
   if (skipped > of_boot_texts) return without_packets(connection_, skipped);
-  if (pipeline_.scans() > scans_at_begin_)
+  if (pipeline_.counts().scans > scans_at_begin_)
     return {task::reading, problem::stalled, connection_.name()};
   const bool is_by_line = options_.model->motor == motor_kind::dtr;
   const auto why = is_by_line ? error_detail::motor_line : error_detail::usual;

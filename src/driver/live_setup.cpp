@@ -58,7 +58,7 @@ result<bool> live_driver::go_on_with_setup() {
       if (auto raised = stream_.set_motor(true); !raised) return tl::unexpected(raised.error());
       stream_.begin_points();
       if (!setup_.is_again()) {
-        scans_at_begin_ = pipeline_.scans();
+        scans_at_begin_ = pipeline_.counts().scans;
         skipped_at_begin_ = pipeline_.counts().stream.skipped_bytes();
       }
     }
@@ -126,7 +126,7 @@ result<void> live_driver::finish_step(const outcome& done) {
   if (is_doubtful(finished, done) && setup_.repeat_start(options_, is_start)) return {};
   if (!is_start) return {};
   stage_ = live_stage::scanning;
-  if (pipeline_.lacks_zero()) report(lidar_event::kind::no_zero_angle);
+  if (pipeline_.decoder().lacks_zero()) report(lidar_event::kind::no_zero_angle);
   setup_.clear();
   if (reconnection_.end()) report(lidar_event::kind::reconnected);
   return {};

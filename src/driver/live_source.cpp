@@ -135,7 +135,7 @@ scan_expectation live_source::expects() const noexcept {
   if (stage_ == live_stage::closed || !wants_scan_) return {};
   if (stream_.is_scanning()) {
     const error_detail why = why_not_yet(pipeline_, now_ns());
-    if (!spin_up_.lasts(pipeline_.scans())) return {0, why};
+    if (!spin_up_.lasts(pipeline_.counts().scans)) return {0, why};
     const bool is_slow = why == error_detail::no_revolution && now_ns() >= spin_up_.ends_ns();
     return {spin_up_.ends_ns(), is_slow ? why : error_detail::spinning_up};
   }

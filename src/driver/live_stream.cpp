@@ -128,7 +128,8 @@ void live_stream::follow_delivery() {
 }
 
 void live_stream::begin_points() {
-  of_.motor.begin(detail::saturating_add(now_ns(), spin_up::longest_ns), of_.pipeline.scans());
+  of_.motor.begin(detail::saturating_add(now_ns(), spin_up::longest_ns),
+                  of_.pipeline.counts().scans);
   of_.pipeline.begin(sample_rate_hz_);
   record(recorded_event::kind::begun);
 }

@@ -140,10 +140,6 @@ class point_pipeline {
   void identified(const device_information& who) noexcept;
   /// What is added to all angles.
   [[nodiscard]] zero_offset& zero() noexcept { return decoder_.zero(); }
-  /// Whether points lack the offset that their model has.
-  [[nodiscard]] bool lacks_zero() const noexcept {
-    return decoder_.like().zero_angle_divisor != 0 && !decoder_.zero().angle();
-  }
 
   // ---- scans ----
 
@@ -162,8 +158,6 @@ class point_pipeline {
     scan_.reset();
   }
 
-  /// How many whole revolutions were complete.
-  [[nodiscard]] std::uint64_t scans() const noexcept { return counts_.scans; }
   /// Of the packets. Its next_sample_ns() is that of the last event.
   [[nodiscard]] const timed_decoder& decoder() const noexcept { return decoder_; }
 

@@ -7,10 +7,24 @@
 #include "g4lidar/recording/recorded_device.hpp"
 
 namespace g4lidar {
+namespace {
+
+/// For a recording of raw bytes: what is added to the angles of the points that follow.
+recorded_event event_of(recorded_event::kind what, std::int64_t now_ns, connection& from,
+                        std::uint32_t sample_rate_hz, std::optional<zero_angle> zero) {
+  recorded_event made{.what = what, .time_ns = now_ns};
+  made.baud = from.on().baud();
+  made.sample_rate_hz = sample_rate_hz;
+  made.name = from.name();
+  made.zero = zero;
+  return made;
+}
+
+}  // namespace
 
 replay_player::replay_player(parts& of, const lidar_options& options)
     : scan_source(of, options),
-      reported_(*options.model, true),
+      stated_{.identity = identity_reader(*options.model, true)},
       sample_rate_hz_(first_rate_hz(*options.model)) {}
 
 result<void> replay_player::open() {
@@ -19,7 +33,7 @@ result<void> replay_player::open() {
   file_ = file_of(connection_.from());
   source_ = hook != nullptr ? hook->events() : nullptr;
   if (source_ == nullptr) {
-    recorder_ = hook;
+    stated_.recorder = hook;
     source_ = file_;  // the seams of raw bytes in a loop
   }
   if (file_ != nullptr) file_->controls().when_moved([this] { follow_seek(); });
@@ -39,7 +53,10 @@ result<void> replay_player::open() {
 result<void> replay_player::start() {
   if (stage_ != stage::idle) return can_read();
   stage_ = stage::playing;
-  if (pipeline_.zero().angle()) record(recorded_event::kind::begun);  // the user knows it
+  if (const auto zero = pipeline_.zero().angle()) {  // the user knows it
+    stated_.record(
+        event_of(recorded_event::kind::begun, now_ns(), connection_, sample_rate_hz_, zero));
+  }
   spin_up_.forget();
   begin_spin_up();
   return {};
@@ -82,7 +99,7 @@ scan_expectation replay_player::expects() const noexcept {
   const auto why =
       file_ != nullptr ? error_detail::of_file : why_not_yet(pipeline_, now_ns());  // a pipe
   if (!delivers_ || stands()) return {never_ns, why};
-  return {spin_up_.lasts(pipeline_.scans()) ? spin_up_.ends_ns() : 0, why};
+  return {spin_up_.lasts(pipeline_.counts().scans) ? spin_up_.ends_ns() : 0, why};
 }
 
 result<void> replay_player::advance(std::int64_t deadline_ns) {
@@ -148,7 +165,21 @@ bool replay_player::parse_bytes() {
     if (const event* const found = pipeline_.next()) {
       static_cast<void>(play_events(false));
       follow_delivery();
-      judge(*found);
+      stated_.identity.take(*found);
+      if (stated_.identity.take_news()) {
+        // NOLINTNEXTLINE(bugprone-unchecked-optional-access): there is news
+        if (!information_.is_known()) information_ = *stated_.identity.who();
+        if (stated_.identity.has_other_number()) report(lidar_event::kind::other_number);
+      }
+      if (const auto zero = pipeline_.zero().angle(); zero != stated_.recorded_zero) {
+        stated_.record(
+            event_of(recorded_event::kind::state, now_ns(), connection_, sample_rate_hz_, zero));
+      }
+      const bool makes_points = pipeline_.delivers() && std::get_if<packet_view>(found) != nullptr;
+      if (makes_points && !std::exchange(stated_.is_zero_judged, true) &&
+          pipeline_.decoder().lacks_zero()) {
+        report(lidar_event::kind::no_zero_angle);
+      }
     } else if (!play_events(true)) {
       return false;
     }
@@ -157,29 +188,9 @@ bool replay_player::parse_bytes() {
 }
 
 /// What the bytes state of their lidar, and what they lack: once, with the first packet that makes points.
-void replay_player::judge(const event& found) {
-  reported_.take(found);
-  if (reported_.take_news()) {
-    // NOLINTNEXTLINE(bugprone-unchecked-optional-access): there is news
-    if (!information_.is_known()) information_ = *reported_.who();
-    if (reported_.has_other_number()) report(lidar_event::kind::other_number);
-  }
-  if (pipeline_.zero().angle() != recorded_zero_) record(recorded_event::kind::state);
-  const bool makes_points = pipeline_.delivers() && std::get_if<packet_view>(&found) != nullptr;
-  if (!makes_points || std::exchange(is_zero_judged_, true)) return;
-  if (pipeline_.lacks_zero()) report(lidar_event::kind::no_zero_angle);
-}
-
-/// For a recording of raw bytes: what is added to the angles of the points that follow.
-void replay_player::record(recorded_event::kind what) {
-  recorded_zero_ = pipeline_.zero().angle();
-  if (recorder_ == nullptr) return;
-  recorded_event made{.what = what, .time_ns = now_ns()};
-  made.baud = connection_.on().baud();
-  made.sample_rate_hz = sample_rate_hz_;
-  made.name = connection_.name();
-  made.zero = recorded_zero_;
-  recorder_->event(made);
+void replay_player::statements::record(recorded_event made) {
+  recorded_zero = made.zero;
+  if (recorder != nullptr) recorder->event(made);
 }
 
 void replay_player::follow_delivery() {
@@ -248,13 +259,13 @@ void replay_player::play(const recorded_event& what) {
       pipeline_.follow(what.baud);
       delivers_ = true;  // the driver's first event corrects this
       spin_up_.forget();
-      if (!std::exchange(is_lost_, false)) return;
-      ++reconnects_;
+      if (!std::exchange(lost_.is_lost, false)) return;
+      ++lost_.ended;
       return report(lidar_event::kind::reconnected);
     case recorded_event::kind::closed:
       delivers_ = false;
       if (what.reason == problem::cancelled) return;
-      is_lost_ = true;
+      lost_.is_lost = true;
       return report(lidar_event::kind::lost, what.reason);
     case recorded_event::kind::begun:
       delivers_ = what.delivers;
@@ -309,7 +320,7 @@ void replay_player::follow_seek() {
   pipeline_.end();
   pipeline_.drop_scan();
   next_.event.reset();
-  next_.is_cut = is_lost_ = is_pause_reported_ = false;
+  next_.is_cut = lost_.is_lost = is_pause_reported_ = false;
   delivers_ = true;
   if (!connection_.is_open()) static_cast<void>(connection_.open());
   receiver_.reset(0, 0, now_ns());

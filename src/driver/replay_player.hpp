@@ -43,7 +43,7 @@ class replay_player final : public scan_source {
   [[nodiscard]] std::int64_t step_until_ns(std::int64_t deadline_ns) const noexcept override {
     return source_ != nullptr ? source_->recorded_ns(deadline_ns) : deadline_ns;
   }
-  void add_to(lidar_counts& counts) const noexcept override { counts.reconnects = reconnects_; }
+  void add_to(lidar_counts& counts) const noexcept override { counts.reconnects = lost_.ended; }
 
  private:
   enum class stage : std::uint8_t {
@@ -52,6 +52,21 @@ class replay_player final : public scan_source {
     playing,  ///< Produces points.
     ending,   ///< No more bytes; produces the last points.
     ended,    ///< Waits until the last scan is taken.
+  };
+
+  /// What the bytes state about their lidar, and what is recorded of it.
+  struct statements {
+    identity_reader identity;
+    recording_hook* recorder = nullptr;         ///< Of raw bytes, which have no events.
+    std::optional<zero_angle> recorded_zero{};  ///< By `recorder`.
+    bool is_zero_judged = false;                ///< Whether it is known when points begin.
+
+    void record(recorded_event made);
+  };
+  /// Of the recorded connection.
+  struct losses {
+    bool is_lost = false;
+    std::uint64_t ended = 0;
   };
 
   /// The next event, whose place has not been reached yet.
@@ -70,25 +85,19 @@ class replay_player final : public scan_source {
   [[nodiscard]] bool play_events(bool all);
   [[nodiscard]] bool is_here(const recorded_event& what) const noexcept;
   void play(const recorded_event& what);
-  void judge(const event& found);
-  void record(recorded_event::kind what);
 
   played_file* file_ = nullptr;              // null: a pipe
   recorded_event_source* source_ = nullptr;  // of a file
-  recording_hook* recorder_ = nullptr;       // of raw bytes, which have no events
   stage stage_ = stage::closed;
   error why_{task::reading, problem::gone};  // why it ended
   awaited_event next_;
   bool delivers_ = true;            // whether packets produced points in the recording
   bool may_have_more_ = true;       // after the last read
   bool is_pause_reported_ = false;  // the event long_pause was reported
-  bool is_lost_ = false;            // the recorded connection was lost
   bool is_released_ = false;
-  bool is_zero_judged_ = false;  // whether it is known when points begin
-  identity_reader reported_;
-  std::optional<zero_angle> recorded_zero_;  // by recorder_
+  statements stated_;
   std::uint32_t sample_rate_hz_;
-  std::uint64_t reconnects_ = 0;
+  losses lost_;
 };
 
 }  // namespace g4lidar

@@ -120,7 +120,7 @@ class scan_source {
 
   /// The motor is started: the first scan comes when it has spun up.
   void begin_spin_up() noexcept {
-    spin_up_.begin(deadline_after_ns(spin_up::longest_ns), pipeline_.scans());
+    spin_up_.begin(deadline_after_ns(spin_up::longest_ns), pipeline_.counts().scans);
   }
 
   connection& connection_;

@@ -50,6 +50,10 @@ class timed_decoder {
   /// What is added to each angle.
   [[nodiscard]] zero_offset& zero() noexcept { return zero_; }
   [[nodiscard]] const zero_offset& zero() const noexcept { return zero_; }
+  /// Whether points lack the offset that their model has.
+  [[nodiscard]] bool lacks_zero() const noexcept {
+    return which_->zero_angle_divisor != 0 && !zero_.angle();
+  }
   /// A scan begins, or continues after an interruption. `sample_rate_hz` is nominal.
   void begin(std::uint32_t sample_rate_hz) noexcept {
     clock_.reset(expected_rate_of(*which_, sample_rate_hz));

@@ -95,10 +95,7 @@ result<void> recording_reader::file_reader::check() {
 
 /// By the summary.
 void recording_reader::file_reader::read_summary() {
-  mcap::read_summary(*chunks_, [this](opcode kind, field_reader record) {
-    if (kind == opcode::channel) take_channel(record);
-    if (kind == opcode::metadata) take_metadata(record);
-  });
+  mcap::read_summary(*chunks_, [this](opcode kind, field_reader record) { take(kind, record); });
 }
 
 /// The same where there is no summary.
@@ -111,20 +108,19 @@ void recording_reader::file_reader::read_front() {
     field_reader records(block.records);
     const auto kind = static_cast<opcode>(records.take<std::uint8_t>());
     field_reader record(records.take(records.take<std::uint64_t>()));
-    if (kind == opcode::metadata) take_metadata(record);
-    if (kind == opcode::channel) take_channel(record);
+    take(kind, record);
   }
 }
 
-/// The bytes of another model would be read as those of the first one.
-void recording_reader::file_reader::take_channel(field_reader record) {
-  channels_.take(record);
-  if (channels_.contradiction().empty() || file_->trouble()) return;
-  file_->fail(error(task::reading, problem::bad_file, path_ + ", " + channels_.contradiction(), 0,
-                    error_detail::several_models));
-}
-
-void recording_reader::file_reader::take_metadata(field_reader record) {
+/// A channel, whose bytes of another model would be read as those of the first one; or metadata.
+void recording_reader::file_reader::take(opcode kind, field_reader record) {
+  if (kind == opcode::channel) {
+    channels_.take(record);
+    if (channels_.contradiction().empty() || file_->trouble()) return;
+    file_->fail(error(task::reading, problem::bad_file, path_ + ", " + channels_.contradiction(), 0,
+                      error_detail::several_models));
+  }
+  if (kind != opcode::metadata) return;
   const std::string_view name = record.take_text();
   if (name == mcap::device_metadata) device_ = mcap::device_of(record);
   if (name == mcap::digest_metadata) digest_ = mcap::digest_of(record, last_ns_);
@@ -197,7 +193,7 @@ std::optional<std::int64_t> recording_reader::file_reader::first_time_in(bytes& 
     const auto kind = static_cast<opcode>(rest.take<std::uint8_t>());
     const field_reader record(rest.take(rest.take<std::uint64_t>()));
     records = rest.rest();
-    if (kind == opcode::channel) take_channel(record);
+    if (kind == opcode::channel) take(kind, record);
     if (kind != opcode::message) continue;
     const auto item = item_in(record);
     if (item && item->what != recorded_item::kind::odometry) return item->time_ns;
@@ -273,8 +269,7 @@ std::optional<recorded_item> recording_reader::file_reader::read() {
         break;
       }
       records_ = rest.rest();
-      if (kind == opcode::channel) take_channel(record);
-      if (kind == opcode::metadata) take_metadata(record);
+      take(kind, record);
       if (kind != opcode::message) continue;
       auto item = item_in(record);
       if (!item) continue;

@@ -49,8 +49,7 @@ class recording_reader::file_reader {
   [[nodiscard]] std::optional<recorded_item> advance();
   [[nodiscard]] std::optional<recorded_item> read();
   [[nodiscard]] std::optional<recorded_item> item_in(mcap::field_reader record) noexcept;
-  void take_channel(mcap::field_reader record);
-  void take_metadata(mcap::field_reader record);
+  void take(mcap::opcode kind, mcap::field_reader record);
   [[nodiscard]] bool skips(std::uint32_t sequence) noexcept;
 
   std::string path_;

@@ -95,16 +95,14 @@ result<owned_fd> open_path(const std::string& path, const system_calls& calls) {
   struct stat file{};
   // Checked before it is opened: opening a pipe or a disk can have effects on others.
   if (uninterrupted([&] { return calls.stat(path.c_str(), &file); }) != 0) {
-    const int system_errno = errno;
-    if (system_errno == EACCES) {
-      return failure(task::opening, problem::permission, path, system_errno);
-    }
-    return not_opened(path, system_errno, file);
+    const int why = errno;
+    if (why == EACCES) return failure(task::opening, problem::permission, path, why);
+    return not_opened(path, why, file);
   }
   if (is_pty_master(file)) return failure(task::opening, problem::not_serial, path);
   if (!S_ISCHR(file.st_mode)) {
-    constexpr std::size_t longest = 30;  // the subject of an error holds 95 characters
-    const bool fits = S_ISREG(file.st_mode) && path.size() <= longest;
+    const bool fits =
+        S_ISREG(file.st_mode) && path.size() <= 30;  // the subject holds 95 characters
     const std::string hint = fits ? ", a file, which opens as file:" + path : "";
     return failure(task::opening, problem::not_serial, path + hint);
   }

@@ -294,7 +294,8 @@ TEST_F(CRecording, RecordsBytesOfAProgram) {
 TEST_F(CRecording, ReplacesNeitherItsSourceNorItsWorld) {
   record();
   const std::string room = scratch_.path("room.txt");
-  std::ofstream(room) << "wall 2 2 -2 2\nwall -2 2 -2 -2\nwall -2 -2 2 -2\nwall 2 -2 2 2\n";
+  std::ofstream(room)
+      << "wall 2 2 -2 2\nwall -2 2 -2 -2\nwall -2 -2 2 -2\nwall 2 -2 2 2\nlidar 0 0 0\n";
   g4lidar_recorder_options how;
   g4lidar_recorder_options_init(&how, sizeof how);
   how.overwrite = true;

@@ -118,7 +118,7 @@ report examine(const char* setup, g4lidar_doctor_options* options = nullptr) {
 
 TEST(CDoctor, FindsNothingInAHealthyLidar) {
   const report found = examine("sim:?seed=5");
-  ASSERT_EQ(g4lidar_report_count(found.get()), 9U);
+  ASSERT_EQ(g4lidar_report_count(found.get()), 10U);
   bool has_rate = false;
   for (std::size_t i = 0; i < g4lidar_report_count(found.get()); ++i) {
     const g4lidar_stage* stage = g4lidar_report_at(found.get(), i);

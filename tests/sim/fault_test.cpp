@@ -26,10 +26,7 @@ using test::second;
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
-const byte_vector information = [] {
-  host_side host;
-  return host.ask(command::device_info);
-}();
+const byte_vector information = host_side().ask(command::device_info);
 
 fault with_rate(fault f, double rate) {
   f.rate = rate;

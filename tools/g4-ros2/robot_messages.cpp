@@ -5,8 +5,8 @@
 #include <utility>
 
 #include <messages.h>
-#include "g4lidar/detail/saturating.hpp"
 #include "g4lidar/message/ros_messages.hpp"
+#include "io/far_times.hpp"
 #include "scan_messages.hpp"
 
 namespace g4_tool {
@@ -60,7 +60,7 @@ void robot_messages::publish(const stamped_odometry& at, std::int64_t stamp_ns) 
 }
 
 void robot_messages::publish_clock(std::int64_t now_ns) {
-  const std::int64_t since_ns = g4lidar::detail::saturating_sub(now_ns, clock_ns_);
+  const std::int64_t since_ns = way_ns(clock_ns_, now_ns);
   if (!clock_ || !clock_->is_wanted() || (since_ns > -clock_step_ns && since_ns < clock_step_ns))
     return;
   clock_ns_ = now_ns;

@@ -3,7 +3,7 @@
 
 #include <utility>
 
-#include "g4lidar/detail/saturating.hpp"
+#include "io/far_times.hpp"
 
 namespace g4_tool {
 
@@ -28,7 +28,7 @@ scan_messages::scan_messages(dds::bus& on, const ros2_options& options, std::str
 }
 
 message_header scan_messages::header_of(const model& which, const scan_times& when) const {
-  return {.stamp_ns = g4lidar::detail::saturating_add(when.first_ns, when.ahead_ns),
+  return {.stamp_ns = sum_ns(when.first_ns, when.ahead_ns),
           .frame_id = frame_id_,
           .duration_ns = when.duration_ns,
           .order = options_.order,
@@ -47,8 +47,7 @@ void scan_messages::publish_scan(const scan& for_grid, const grid_options& grid,
 
 void scan_messages::publish_points(const scan& kept, const scan_times& when) {
   message_header header = header_of(*kept.model, when);
-  if (!kept.empty())
-    header.stamp_ns = g4lidar::detail::saturating_add(cloud_time_ns(kept.points), when.ahead_ns);
+  if (!kept.empty()) header.stamp_ns = sum_ns(cloud_time_ns(kept.points), when.ahead_ns);
   message_.clear();
   put_point_cloud2(kept.points, header, message_);
   points_->publish(message_);

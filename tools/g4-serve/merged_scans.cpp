@@ -4,8 +4,8 @@
 #include <deque>
 #include <utility>
 
-#include "g4lidar/detail/saturating.hpp"
 #include "g4lidar/odometry_feed.hpp"
+#include "io/far_times.hpp"
 #include "io/place_tracker.hpp"
 #include "io/scan_merger.hpp"
 #include "io/shape_files.hpp"
@@ -66,8 +66,7 @@ class merged_scans final : public scan_maker {
   /// One call at a time.
   void send(const merged_scan& all, std::uint32_t revolution,
             const client_registry::demand& wanted) {
-    const scan_stamp when{g4lidar::detail::saturating_add(all.when.first_ns, all.when.ahead_ns),
-                          all.when.duration_ns};
+    const scan_stamp when{sum_ns(all.when.first_ns, all.when.ahead_ns), all.when.duration_ns};
     std::optional<lidar_place> place;
     if (deskew_ == deskewing::by_path) {
       place = tracker_.by_path(all.moved.path, {}, all.when.first_ns, begun_);

@@ -17,8 +17,8 @@
 
 #include "cli/exit_code.hpp"
 #include "cli/logger.hpp"
-#include "g4lidar/detail/saturating.hpp"
 #include "g4lidar/transport/forwarding.hpp"
+#include "io/far_times.hpp"
 #include "io/output.hpp"
 #include "io/source.hpp"
 
@@ -183,8 +183,7 @@ void page_recorder::check() {
   const std::lock_guard lock(mutex_);
   shown_.bytes = counts.file_bytes;
   if (const auto now_ns = switch_.latest_ns())
-    shown_.seconds =
-        static_cast<double>(g4lidar::detail::saturating_sub(*now_ns, begin_ns_)) * 1e-9;
+    shown_.seconds = static_cast<double>(way_ns(begin_ns_, *now_ns)) * 1e-9;
 }
 
 void page_recorder::end(const std::string& why, bool discards) {

@@ -6,7 +6,7 @@
 #include <limits>
 #include <variant>
 
-#include "g4lidar/detail/saturating.hpp"
+#include "io/far_times.hpp"
 
 namespace g4_tool::acceptance {
 namespace {
@@ -85,8 +85,7 @@ void stream_survey::take(const event& found, std::int64_t arrival_ns) {
 
 void stream_survey::take(packet_view packet, std::int64_t arrival_ns) {
   if (counts.packets > 0) {
-    longest_gap_ns =
-        std::max(longest_gap_ns, g4lidar::detail::saturating_sub(arrival_ns, last_packet_ns_));
+    longest_gap_ns = std::max(longest_gap_ns, way_ns(last_packet_ns_, arrival_ns));
   }
   last_packet_ns_ = arrival_ns;
   directions.take(packet);
@@ -130,8 +129,7 @@ void stream_survey::compare_intensities(packet_view packet) {
 }
 
 double stream_survey::per_second(std::uint64_t count) const noexcept {
-  const double seconds =
-      static_cast<double>(g4lidar::detail::saturating_sub(last_zero_ns_, first_zero_ns_)) / 1e9;
+  const double seconds = static_cast<double>(way_ns(first_zero_ns_, last_zero_ns_)) / 1e9;
   return seconds > 0.0 ? static_cast<double>(count) / seconds : 0.0;
 }
 

@@ -14,11 +14,11 @@
 
 #include "cli/exit_code.hpp"
 #include "cli/logger.hpp"
-#include "g4lidar/detail/saturating.hpp"
 #include "g4lidar/export/byte_points.hpp"
 #include "g4lidar/export/shaping_writer.hpp"
 #include "g4lidar/export/slam_text.hpp"
 #include "g4lidar/wall_clock.hpp"
+#include "io/far_times.hpp"
 #include "io/input.hpp"
 #include "io/interrupt.hpp"
 #include "io/output.hpp"
@@ -58,7 +58,7 @@ writing_options how_to_write(const point_job& job, const common_options& common,
   made.wall_ahead_ns = wall_clock().ahead().count();
   if (made.follows_wall_clock) return made;
   read_items(path_of_source(common.source), {}, [&made](const recorded_item& first) {
-    made.wall_ahead_ns = g4lidar::detail::saturating_sub(first.wall_ns, first.time_ns);
+    made.wall_ahead_ns = way_ns(first.time_ns, first.wall_ns);
     return false;
   });
   return made;

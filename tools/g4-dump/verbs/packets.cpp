@@ -9,11 +9,11 @@
 
 #include "cli/exit_code.hpp"
 #include "cli/logger.hpp"
-#include "g4lidar/detail/saturating.hpp"
 #include "g4lidar/export/protocol_log.hpp"
 #include "g4lidar/recording/reader.hpp"
 #include "g4lidar/transport/forwarding.hpp"
 #include "g4lidar/wall_clock.hpp"
+#include "io/far_times.hpp"
 #include "io/input.hpp"
 #include "io/interrupt.hpp"
 #include "io/output.hpp"
@@ -83,11 +83,8 @@ void list_recording(const packets_options& options) {
   const auto reader = read_items(path, {}, [&](const recorded_item& item) {
     if (item.what == recorded_item::kind::odometry) return true;
     if (!log) {
-      log.emplace(options.style,
-                  time_shift(wanted, g4lidar::detail::saturating_sub(item.wall_ns, item.time_ns)),
-                  out);
-      if (common.duration.count() > 0)
-        end_ns = g4lidar::detail::saturating_add(item.time_ns, common.duration.count());
+      log.emplace(options.style, time_shift(wanted, way_ns(item.time_ns, item.wall_ns)), out);
+      if (common.duration.count() > 0) end_ns = sum_ns(item.time_ns, common.duration.count());
     }
     if (end_ns && item.time_ns >= *end_ns) return false;
     if (item.what == recorded_item::kind::from_device) {

@@ -12,8 +12,8 @@
 
 #include "cli/exit_code.hpp"
 #include "cli/logger.hpp"
-#include "g4lidar/detail/saturating.hpp"
 #include "io/command_source.hpp"
+#include "io/far_times.hpp"
 #include "io/input.hpp"
 #include "io/interrupt.hpp"
 #include "io/output.hpp"
@@ -94,8 +94,7 @@ class source_clock {
   void add(const scan& what) noexcept {
     if (what.points.empty()) return;
     if (!first_ns_) first_ns_ = what.points.front().time_ns;
-    recorded_ = std::chrono::nanoseconds(
-        g4lidar::detail::saturating_sub(what.points.back().time_ns, *first_ns_));
+    recorded_ = std::chrono::nanoseconds(way_ns(*first_ns_, what.points.back().time_ns));
   }
   [[nodiscard]] double seconds() const {
     return std::chrono::duration<double>(is_file_ ? recorded_ : clock::now() - begin_).count();

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "g4lidar/cartesian.hpp"
-#include "g4lidar/detail/saturating.hpp"
+#include "io/far_times.hpp"
 
 namespace g4_tool {
 namespace {
@@ -58,8 +58,7 @@ void trails::add(const g4lidar::scan& newest, const std::optional<lidar_place>& 
       now.returns.push_back(in_map(to_xy(each, g4lidar::frame::robot, newest.model->turn_deg)));
     }
   }
-  while (g4lidar::detail::saturating_sub(now.time_ns, kept_.front().time_ns) > length_s_ * ns_in_s)
-    kept_.pop_front();
+  while (way_ns(kept_.front().time_ns, now.time_ns) > length_s_ * ns_in_s) kept_.pop_front();
 }
 
 void trails::change_length() {

@@ -3,7 +3,7 @@
 
 #include <utility>
 
-#include "g4lidar/detail/saturating.hpp"
+#include "io/far_times.hpp"
 
 namespace g4_tool {
 namespace {
@@ -32,14 +32,14 @@ std::optional<lidar_place> place_tracker::by_path(std::span<const g4lidar::stamp
 
 std::optional<lidar_place> place_tracker::by_twist(const std::optional<twist_2d>& twist,
                                                    std::int64_t time_ns) {
-  const bool continues = last_ && time_ns > last_->time_ns &&
-                         g4lidar::detail::saturating_sub(time_ns, last_->time_ns) <= longest_gap_ns;
+  const bool continues =
+      last_ && time_ns > last_->time_ns && way_ns(last_->time_ns, time_ns) <= longest_gap_ns;
   if (!continues) last_.reset();
   const twist_2d before = velocity_;
   if (twist) {
     velocity_ = *twist;
     known_ns_ = time_ns;
-  } else if (!last_ || g4lidar::detail::saturating_sub(time_ns, known_ns_) > longest_gap_ns) {
+  } else if (!last_ || way_ns(known_ns_, time_ns) > longest_gap_ns) {
     last_.reset();
     return std::nullopt;
   }
@@ -48,9 +48,7 @@ std::optional<lidar_place> place_tracker::by_twist(const std::optional<twist_2d>
     const twist_2d mean{(before.x_m_per_s + velocity_.x_m_per_s) / 2,
                         (before.y_m_per_s + velocity_.y_m_per_s) / 2,
                         (before.yaw_rad_per_s + velocity_.yaw_rad_per_s) / 2};
-    last_->pose =
-        last_->pose *
-        moved_by(mean, seconds_of(g4lidar::detail::saturating_sub(time_ns, last_->time_ns)));
+    last_->pose = last_->pose * moved_by(mean, seconds_of(way_ns(last_->time_ns, time_ns)));
   } else {
     last_.emplace();
     ++map_;

@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "cli/rows.hpp"
-#include "g4lidar/detail/saturating.hpp"
 #include "g4lidar/grid.hpp"
+#include "io/far_times.hpp"
 
 namespace g4_tool {
 namespace {
@@ -40,11 +40,10 @@ void scan_merger::add(std::size_t index, g4lidar::scan_shaper& scan, const scan_
   copy(here.for_grid, for_grid.points);
   here.model = for_grid.model;
   if (wants_points) copy(here.kept, scan.kept().points);
-  here.end_ns = g4lidar::detail::saturating_add(when.first_ns, when.duration_ns);
+  here.end_ns = sum_ns(when.first_ns, when.duration_ns);
   const bool is_leader =
       std::ranges::none_of(std::span(parts_).first(index), [&here](const part& earlier) {
-        return g4lidar::detail::saturating_sub(here.end_ns, earlier.end_ns) <
-               g4lidar::fresh_scan_ns;
+        return way_ns(earlier.end_ns, here.end_ns) < g4lidar::fresh_scan_ns;
       });
   if (!is_leader) return;
   const g4lidar::model which = merged_model();
