@@ -147,7 +147,10 @@ void reply_statistics::judge(stage_report& report, bool host_paused, const model
   if (sum.wrong > 0 && !is_held_up) report.find(diagnosis::answers_wrong);
   if (sum.twice > 0) report.find(diagnosis::answers_twice);
   if (sum.missing > 0 && !is_held_up) report.find(diagnosis::answers_missing);
-  if (answered() > 0 && has_request(which, request_kind::zero_angle) && !has_zero(which)) {
+  const bool has_asked =
+      std::ranges::find(made_, command::zero_angle, &exchange::asked) != made_.end();
+  if (has_asked && answered() > 0 && has_request(which, request_kind::zero_angle) &&
+      !has_zero(which)) {
     report.find(diagnosis::no_zero_angle);
   }
 }

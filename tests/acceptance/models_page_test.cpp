@@ -5,6 +5,7 @@
 #include <array>
 #include <fstream>
 #include <map>
+#include <regex>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -43,7 +44,9 @@ std::map<std::string, std::string> evidence_in_readme() {
   while (std::getline(page, line) && line.starts_with("|")) {
     const auto cells = cells_of(line);
     if (cells.size() != 3 || line.starts_with("|-")) continue;
-    std::istringstream names(cells[0]);
+    // Without the links to pages.
+    std::istringstream names(
+        std::regex_replace(cells[0], std::regex(R"(\[([^\]]*)\]\([^)]*\))"), "$1"));
     for (std::string name; std::getline(names >> std::ws, name, ',');) all[name] = cells[2];
   }
   return all;

@@ -133,7 +133,7 @@ TEST(CDoctor, FindsNothingInAHealthyLidar) {
     }
   }
   EXPECT_TRUE(has_rate);
-  EXPECT_EQ(g4lidar_report_at(found.get(), 9), nullptr);
+  EXPECT_EQ(g4lidar_report_at(found.get(), 10), nullptr);
 }
 
 struct seen {

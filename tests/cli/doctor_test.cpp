@@ -120,7 +120,7 @@ TEST_F(Doctor, ExaminesARecording) {
   const outcome done = examine(file);
   EXPECT_EQ(done.code, 0) << done.out << done.err;
   const std::vector<json> stages = stages_of(done);
-  ASSERT_EQ(stages.size(), 12U) << done.out;
+  ASSERT_EQ(stages.size(), 13U) << done.out;
   const std::vector<std::string> verdicts{"ok",      "skipped", "skipped", "ok",
                                           "skipped", "ok",      "ok",      "ok"};
   for (std::size_t i = 0; i < verdicts.size(); ++i) {

@@ -97,7 +97,7 @@ TEST_F(Talk, Set_RefusesWithTheLimitsOfTheModel) {
   const outcome g4 = run({"set", "sim:", "frequency=40"});
   EXPECT_EQ(g4.code, 2);
   EXPECT_THAT(g4.err, HasSubstr("frequency: '40' is not in the range 5 to 12 Hz of a G4"));
-  const outcome tg = run({"set", "frequency=2", "sim:?model=tg15"});
+  const outcome tg = run({"set", "sim:?model=tg15", "frequency=2"});
   EXPECT_THAT(tg.err, HasSubstr("frequency: '2' is not in the range 3 to 16 Hz of a TG15"));
   const outcome named = run({"set", port(), "--model", "t-mini", "frequency=5"});
   EXPECT_THAT(named.err, HasSubstr("frequency: '5' is not in the range 6 to 12 Hz of a T-mini"));

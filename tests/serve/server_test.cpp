@@ -62,7 +62,7 @@ TEST_F(Server, PageProtocol_FromHelloToASetting) {
   client->send_text(R"({"op":"set","name":"frequency","value":10})");
   EXPECT_EQ(next(*client, "settings")["settings"]["frequency"], 10.0);
   client->send_text(R"({"op":"set","name":"frequency","value":100})");
-  EXPECT_THAT(next(*client, "error")["message"].get<std::string>(), HasSubstr("range 3 to 16"));
+  EXPECT_THAT(next(*client, "error")["message"].get<std::string>(), HasSubstr("range 5 to 12"));
   EXPECT_TRUE(gets_scans(*client)) << "it goes on";
   EXPECT_EQ(next(*open_page(), "hello")["settings"]["frequency"], 10.0);
   EXPECT_EQ(end().code, 128 + SIGTERM);
