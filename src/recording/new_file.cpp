@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <optional>
 #include <system_error>
+#include <utility>
 
 #include "transport/system_calls.hpp"
 
@@ -44,15 +45,18 @@ result<new_file> new_file::create_beside(const std::string& path, unsigned mode)
   const std::filesystem::path target = std::filesystem::canonical(path, why);
   if (why) return failure(task::opening, problem::system, path, why.value());
   const std::string begin = target.parent_path() / (".g4lidar-" + std::to_string(::getpid()) + "-");
+  // All memory is taken before there is a file, which would be left behind.
+  std::string name = path;
+  std::string place = target.string();
   for (unsigned attempt = 0;; ++attempt) {
-    const std::string temporary = begin + std::to_string(attempt) + ".tmp";
+    std::string temporary = begin + std::to_string(attempt) + ".tmp";
     owned_fd fd = open_to_write(temporary, O_CREAT | O_EXCL);
     if (!fd && errno == EEXIST) continue;
     if (!fd) return failed(task::opening, path);
     static_cast<void>(::fchmod(fd.get(), mode));
-    new_file made(std::move(fd), path);
-    made.temporary_ = temporary;
-    made.target_ = target;
+    new_file made(std::move(fd), std::move(name));
+    made.temporary_ = std::move(temporary);
+    made.target_ = std::move(place);
     return made;
   }
 }

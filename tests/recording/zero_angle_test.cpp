@@ -78,14 +78,34 @@ bool has(const run_result& run, lidar_event::kind what) {
   return std::ranges::count(run.events, what) == 1;
 }
 
-/// How far `got` is turned from `wanted` for the points of the same samples: those are at `shift` in `wanted`.
+/// How many points at the end of `longer` are behind the last one of `shorter`.
+std::size_t ahead_of(const std::vector<point>& longer, const std::vector<point>& shorter) {
+  constexpr std::size_t compared = 200;
+  for (std::size_t ahead = 0; ahead + compared < longer.size(); ++ahead) {
+    const auto end = longer.rbegin() + static_cast<std::ptrdiff_t>(ahead);
+    if (std::equal(end, end + compared, shorter.rbegin(),
+                   [](const point& a, const point& b) { return a.range_mm == b.range_mm; })) {
+      return ahead;
+    }
+  }
+  return longer.size();
+}
+
+/// How far `got` is turned from `wanted` for the points of the same samples. One of both may end earlier.
 double turned_deg(const std::vector<point>& wanted, const std::vector<point>& got) {
-  // The last points of both are of the same samples, but for those that a file in pieces ends with.
+  if (wanted.size() < 2000 || got.size() < 2000) return 999.0;
+  const std::size_t more = ahead_of(wanted, got);
+  const bool is_wanted_longer = more < wanted.size();
+  const std::size_t skip_wanted = is_wanted_longer ? more : 0;
+  const std::size_t skip_got = is_wanted_longer ? 0 : ahead_of(got, wanted);
+  if (skip_got >= got.size()) return 999.0;
   double most = 0.0;
   std::size_t compared = 0;
-  for (std::size_t i = 1; i <= std::min<std::size_t>({wanted.size(), got.size(), 5000}); ++i) {
-    const point& a = wanted[wanted.size() - i];
-    const point& b = got[got.size() - i];
+  for (std::size_t i = 1;
+       i <= std::min<std::size_t>({wanted.size() - skip_wanted, got.size() - skip_got, 5000});
+       ++i) {
+    const point& a = wanted[wanted.size() - skip_wanted - i];
+    const point& b = got[got.size() - skip_got - i];
     EXPECT_EQ(a.range_mm, b.range_mm) << i;
     if (a.range_mm != b.range_mm) return 999.0;
     const double apart =
