@@ -76,6 +76,7 @@ class G4LIDAR_API bulk_decoder {
   /// What is added to each angle, of a model that has such an offset: what the bytes state, or what is set here with
   /// zero_offset::known_by::user.
   [[nodiscard]] zero_offset& zero() noexcept { return zero_; }
+  /// The same.
   [[nodiscard]] const zero_offset& zero() const noexcept { return zero_; }
   /// The instruction set in use.
   [[nodiscard]] instruction_set in_use() const noexcept { return set_; }
