@@ -47,8 +47,8 @@ void report_returns(stage_log& log, const stream_statistics& measured, const dev
     if (wished.in == frame::robot) std::swap(from, to);
     report.add("nothing_from_deg", from);
     report.add("nothing_to_deg", to);
-    report.remark +=
-        (report.remark.empty() ? "Nothing returned in " : "; in ") + from + " to " + to;
+    report.remark.append(report.remark.empty() ? "Nothing returned in " : "; in ");
+    report.remark.append(from).append(" to ").append(to);
   }
   if (!arcs.empty()) {
     report.remark +=

@@ -196,11 +196,10 @@ class scan_assembler {
   }
 
   [[nodiscard]] constexpr std::optional<scan> fill(decoded& packet) noexcept {
-    if (packet.points.empty()) return std::nullopt;
     if (packet.points.size() > packet.sample_count) {  // a mistake of the caller
       packet.points = packet.points.first(packet.sample_count);
-      return fill(packet);
     }
+    if (packet.points.empty()) return std::nullopt;
     const std::size_t first = packet.sample_count - packet.points.size();  // not taken yet
     move_to(within_turn(packet.first_angle_64ths + way(packet, 0, first)), packet.points);
     take_loss();

@@ -44,8 +44,10 @@ namespace g4lidar::detail {
 /// number. *Pure.*
 template <std::integral Integer, std::floating_point Real>
 [[nodiscard]] constexpr bool fits(Real value) noexcept {
-  constexpr Real beyond = Real(2) * static_cast<Real>(std::numeric_limits<Integer>::max() / 2 + 1);
+  constexpr Integer half = std::numeric_limits<Integer>::max() / 2 + 1;  // a power of two
+  constexpr Real beyond = Real(2) * static_cast<Real>(half);
   // g++ 11 has no other constant comparison of what is not a number.
+  // NOLINTNEXTLINE(misc-redundant-expression): not a number
   if (std::is_constant_evaluated() && value != value) return false;
   if constexpr (std::is_unsigned_v<Integer>) {
     return value >= Real(0) && value < beyond;
@@ -60,7 +62,7 @@ template <std::integral Integer, std::floating_point Real>
 [[nodiscard]] constexpr Integer saturated(Real value) noexcept {
   using limits = std::numeric_limits<Integer>;
   if (fits<Integer>(value)) return static_cast<Integer>(value);
-  if (value != value) return 0;
+  if (value != value) return 0;  // NOLINT(misc-redundant-expression): not a number
   return value < Real(0) ? limits::min() : limits::max();
 }
 
