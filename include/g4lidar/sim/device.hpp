@@ -61,7 +61,7 @@ class G4LIDAR_API host_end {
   device* device_;
 };
 
-/// A device. All times are nanoseconds of one virtual clock that only moves forward. The behaviour
+/// A device. All times are nanoseconds of one virtual clock that only moves forward; it ends at 2^62. The behaviour
 /// does not depend on how often functions are called, except for the losses of a slow reader. The
 /// same options, world, faults and writes give the same bytes on every processor. *Single thread.
 /// Allocates on construction only.*

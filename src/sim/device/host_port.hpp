@@ -4,6 +4,7 @@
 
 #include <cstdint>
 
+#include "g4lidar/detail/saturating.hpp"
 #include "g4lidar/sim/device_options.hpp"
 
 namespace g4lidar::sim {
@@ -56,7 +57,7 @@ class host_port {
   void raise(std::int64_t now_ns, bool by_opening) noexcept {
     if (is_high_) return;
     is_high_ = true;
-    const bool is_pulse = now_ns - low_since_ns_ >= shortest_low_ns_;
+    const bool is_pulse = detail::saturating_sub(now_ns, low_since_ns_) >= shortest_low_ns_;
     const bool is_edge = is_pulse && (start_ == dtr_start::edge || !by_opening);
     is_enabled_ = is_enabled_ || start_ == dtr_start::level || is_edge;
   }

@@ -71,7 +71,9 @@ device::machine::event device::machine::next_event() const noexcept {
   return first;
 }
 
-void device::machine::advance(std::int64_t to_ns) noexcept {
+void device::machine::advance(std::int64_t wanted_ns) noexcept {
+  constexpr std::int64_t last_ns = std::int64_t{1} << 62U;  // so that more can be added to it
+  const std::int64_t to_ns = std::min(wanted_ns, last_ns);
   for (event next = next_event(); next.at_ns <= to_ns; next = next_event()) {
     if (next.at_ns == forever_ns) return;
     now_ns_ = std::max(now_ns_, next.at_ns);
