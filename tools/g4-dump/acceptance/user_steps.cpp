@@ -73,7 +73,7 @@ bool target(subject& of, step_result& into, user_action where) {
 }  // namespace
 
 void near_target(subject& of, step_result& into) {
-  if (target(of, into, user_action::place_near))
+  if (target(of, into, user_action::place_near) && of.target_degree)
     bearing(of, into, static_cast<double>(*of.target_degree) + 0.5);
 }
 

@@ -253,7 +253,8 @@ int accept(const acceptance_settings& given) {
     words.emplace_back(name_of(each.of), json_of_step(each).dump());
   file->metadata("g4lidar.acceptance", words);
   const auto closed = file->close();
-  if (cannot_write()) throw failure(*unwritten);
+  static_cast<void>(cannot_write());
+  if (unwritten) throw failure(*unwritten);
   if (!closed) throw failure(closed.error());
   if (!options.json) out.write(questions_of(*how.model, all));
   out.commit();
