@@ -110,6 +110,7 @@ def test_calls_of_a_lidar(g4_simulator: Make, tmp_path: Path) -> None:
     made = g4_simulator()
     lidar = g4lidar.open(made)
     with lidar:
+        lidar.start()
         for seconds in [value for value in REALS if not value > 1.0]:
             is_handled(lidar.next_scan, {"timeout": seconds})
             is_handled(lidar.next_points, {"timeout": seconds})
