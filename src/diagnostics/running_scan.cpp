@@ -20,7 +20,7 @@ void running_scan::begin(bool is_device) {
 
 void running_scan::read_as(const model& which) {
   which_ = &which;
-  measured_ = stream_statistics(which);
+  measured_ = stream_statistics(which, true);
 }
 
 void running_scan::end() {

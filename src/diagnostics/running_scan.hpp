@@ -88,7 +88,7 @@ class running_scan {
   std::optional<command> asked_{};  // the last command
   event_splitter splitter_;
   observer to_{.event = [this](const observed_event& found) { take(found); }};
-  stream_statistics measured_;
+  stream_statistics measured_{g4_model, true};
   stream_tally earlier_;  // of the stretch before
   device_snapshot known_;
   std::uint64_t boots_ = 0;       // boot texts that were handled

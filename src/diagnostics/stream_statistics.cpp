@@ -80,7 +80,8 @@ void stream_statistics::begin() {
 stream_tally stream_statistics::next_stretch() {
   tally_.pace.part();
   const ct_check crc = tally_.counts.crc;
-  stream_tally ended = std::exchange(tally_, {.pace = sample_pace(*which_)});
+  stream_tally ended =
+      std::exchange(tally_, {.pace = sample_pace(*which_), .returns = return_map(is_long_)});
   tally_.counts.crc = crc;
   return ended;
 }

@@ -40,7 +40,9 @@ class step_median {
 class stream_statistics {
  public:
   /// Of packets like those of `which`, which must be valid as long as this.
-  explicit stream_statistics(const model& which = g4_model) : which_(&which) {}
+  /// `is_long`: it runs as long as the lidar, so that it looks at returns now and then only.
+  explicit stream_statistics(const model& which = g4_model, bool is_long = false)
+      : which_(&which), is_long_(is_long) {}
 
   void take(const observed_event& observed);
   void take(const reading& observed);
@@ -97,7 +99,8 @@ class stream_statistics {
   void measure_pace(const place& before, const place& now, std::size_t missing);
 
   const model* which_;
-  stream_tally tally_{.pace = sample_pace(*which_)};
+  bool is_long_;
+  stream_tally tally_{.pace = sample_pace(*which_), .returns = return_map(is_long_)};
   step_median steps_;
   stretch between_;
   std::optional<place> last_;

@@ -54,7 +54,8 @@ recorded_item* item_rounds::find_item() noexcept {
   if (!item_ && !is_over_ && !is_cancelled_) {
     auto read = from_->next();
     if (read && !*read && options_.loop && has_read_) read = begin_again();
-    why_over_ = read ? error(task::reading, problem::end_of_input, path_) : read.error();
+    if (!read) why_over_ = read.error();
+    if (read && !*read) why_over_ = error(task::reading, problem::end_of_input, path_);
     is_cancelled_ = !read && why_over_ == problem::cancelled;
     if (is_cancelled_) static_cast<void>(waits_->take());
     if (read) item_ = *read;

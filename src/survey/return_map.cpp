@@ -32,10 +32,12 @@ void return_map::mark(degree_counts& counts, double from_deg, double to_deg) noe
 }
 
 void return_map::take(packet_view packet, const sample_format& of) noexcept {
-  if (is_complete_ || packet.is_suspect()) return;
+  if (packet.is_suspect()) return;
   if (packet.is_zero()) {
-    is_complete_ = std::ranges::find(returned_, 0U) == returned_.end();
+    ++revolutions_;
+    is_looking_ = !is_thinned_ || revolutions_ <= 2 || revolutions_ % 16 == 0;
   }
+  if (!is_looking_) return;
   switch (of.layout) {
     case sample_layout::quarter_mm:
       return take_as<sample_layout::quarter_mm>(packet, of.correction);

@@ -18,10 +18,13 @@ struct direction_arc {
   int width_deg = 0;
 };
 
-/// Counts in each degree. *Single thread.* Constant memory; about 60 instructions a sample, and none after a revolution
-/// that ends with a return from everywhere: nothing can be missing then.
+/// Counts in each degree. *Single thread.* Constant memory; some tens of instructions a sample.
 class return_map {
  public:
+  return_map() = default;
+  /// `is_thinned`: it looks at the first two revolutions and at each sixteenth, for a diagnosis that always runs.
+  explicit return_map(bool is_thinned) noexcept : is_thinned_(is_thinned) {}
+
   /// Adds a packet of such samples. A suspect packet adds nothing.
   void take(packet_view packet, const sample_format& of) noexcept;
   /// Adds what another one has counted.
@@ -60,7 +63,9 @@ class return_map {
   degree_counts returned_{};
   std::uint64_t samples_ = 0;
   std::uint64_t returns_ = 0;
-  bool is_complete_ = false;  // something has come back from everywhere
+  bool is_thinned_ = false;
+  bool is_looking_ = true;  // at this revolution
+  unsigned revolutions_ = 0;
 };
 
 }  // namespace g4lidar

@@ -125,6 +125,21 @@ TEST(ReturnMap, TwoCanBeAdded) {
   EXPECT_NEAR(arcs[0].from_deg, 195, 2);
 }
 
+// The first two revolutions, and the sixteenth.
+TEST(ReturnMap, AThinnedOneLooksNowAndThen) {
+  const auto zero = packet(0, 0, {8000});
+  std::vector<std::uint8_t> begin = zero;
+  begin[2] = 1;    // CT: a zero packet
+  begin[8] ^= 1U;  // its place in the checksum
+  return_map seen(true);
+  for (int turn = 0; turn < 20; ++turn) {
+    const auto view = packet_view::from(bytes(begin), g4_format);
+    ASSERT_TRUE(view.has_value());
+    seen.take(*view, g4_format);
+  }
+  EXPECT_EQ(seen.samples(), 3U);
+}
+
 TEST(ReturnMap, DirectionsThatNobodyWantsAreNoArc) {
   const auto seen = turns(4, g4_model, [](double deg) { return deg < 180 ? 2000.0 : 0.0; });
   ASSERT_EQ(arcs_in(seen, 30).size(), 1U);
