@@ -125,7 +125,8 @@ TEST(RunningHealthy, PausesAndSettings_AreNotFaults) {
   };
   const seen found = watch(how);
   EXPECT_EQ(found.diagnoses(), "") << found;
-  EXPECT_EQ(verdicts(found.looks.at(14)), "ok ok skipped skipped skipped skipped skipped skipped") << found;
+  EXPECT_EQ(verdicts(found.looks.at(14)), "ok ok skipped skipped skipped skipped skipped skipped")
+      << found;
   EXPECT_NEAR(number_of(found.looks.at(36), diagnostic_stage::rate, "set_hz"), 9.0, 0.001);
   EXPECT_NEAR(number_of(found.looks.at(36), diagnostic_stage::rate, "measured_hz"), 9.0, 0.07);
 }
