@@ -16,6 +16,7 @@
 #include "g4lidar/detail/api.hpp"
 #include "g4lidar/device_information.hpp"
 #include "g4lidar/error.hpp"
+#include "g4lidar/recognition.hpp"
 #include "g4lidar/transport/transport.hpp"
 
 namespace g4lidar {
@@ -94,13 +95,17 @@ struct recognised_lidar {
   bool was_scanning = false;  ///< Packets arrived. A two-way lidar was stopped.
   /// All models between which the bytes do not decide, `model` first: an X2 and an X3 send the same.
   std::vector<const g4lidar::model*> candidates{};
+  known_by by = known_by::nothing;  ///< From what `model` is known.
+  /// Its packets are those of a two-way lidar, and it does not answer: it can be read only.
+  bool is_silent = false;
 };
 
 /// What is known before a search.
 struct search_options {
   const g4lidar::model* model =
-      nullptr;  ///< Not searched for if it is set: its rates are tried, and where something sends at all of several, those of variants. A one-way one gets no byte.
-  std::uint32_t baud = 0;  ///< Not searched for if it is not 0.
+      nullptr;  ///< Not searched for if it is set: its rates are tried first. A one-way one gets no byte.
+  std::uint32_t baud = 0;    ///< Not searched for if it is not 0.
+  bool listen_only = false;  ///< Not a byte is sent.
   /// Whether the user has named the port: if nothing arrives, DTR gets a pulse, because some models need
   /// it to turn. Takes 2 s more.
   bool may_pulse_dtr = false;
@@ -116,7 +121,7 @@ struct search_options {
 /// *Allocates.*
 ///
 /// Fails with silence, garbage (bytes arrived, but no packet and no answer), other_device (a product that is
-/// not supported; the subject names it), does_not_stop, or like the transport. The subject of silence and
+/// not supported, or packets that cannot be those of the named model; the subject names them), or like the transport. The subject of silence and
 /// garbage lists the rates, and that of garbage states how many bytes arrived and how they begin.
 [[nodiscard]] G4LIDAR_API result<recognised_lidar> search(transport& port, std::int64_t deadline_ns,
                                                           const search_options& options = {});

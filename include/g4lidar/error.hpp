@@ -86,6 +86,8 @@ enum class error_detail : std::uint8_t {
   not_sent,        ///< timeout: the port did not accept the bytes of a command.
   other_source,    ///< bad_option: the option is for another kind of source (source.hpp).
   several_models,  ///< bad_file: the parts of a recording state different models of lidar.
+  other_samples,  ///< other_device: packets whose samples have another size than those of the named model.
+  other_maker,  ///< other_device: packets of another maker, or of another kind of device.
 };
 
 /// One error. Trivially copyable, never allocates.

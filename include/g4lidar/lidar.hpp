@@ -21,6 +21,7 @@
 #include "g4lidar/lidar_counts.hpp"
 #include "g4lidar/lidar_event.hpp"
 #include "g4lidar/lidar_options.hpp"
+#include "g4lidar/recognition.hpp"
 #include "g4lidar/point.hpp"
 #include "g4lidar/recording/player.hpp"
 #include "g4lidar/scan.hpp"
@@ -156,8 +157,12 @@ class G4LIDAR_API lidar {
   }
 
   /// What the device reported about itself when it was opened; what a one-way lidar has sent so far, which
-  /// may be nothing: device_information::is_known(). See candidates_of(), too. Valid as long as this lidar.
+  /// may be nothing: device_information::is_known(). See recognition(), too. Valid as long as this lidar.
   [[nodiscard]] const device_information& information() const noexcept;
+  /// As which model it is read, from what that is known, and what contradicts it. If it is not yours, name yours with
+  /// lidar_options::model. One candidate alone if it was named, stated by a file or `sim:`, or if the device answers.
+  /// Valid as long as this lidar. *Never waits.*
+  [[nodiscard]] g4lidar::recognition recognition() const noexcept;
   /// What its turning part has reported, if that differs: some two-way lidars send it when they
   /// start.
   [[nodiscard]] std::optional<device_information> module_information() const noexcept;
@@ -177,16 +182,15 @@ class G4LIDAR_API lidar {
  private:
   friend class lidar_event_loop;
   friend class scan_loop;
-  friend G4LIDAR_API std::span<const model* const> candidates_of(const lidar& of) noexcept;
   class driver;
   explicit lidar(std::unique_ptr<driver> made) noexcept;
   std::unique_ptr<driver> driver_;
 };
 
-/// The model as which `of` is read, first, and those between which its bytes do not decide: an X2 and an X3
-/// send the same. One alone if it was named, stated by a file or `sim:`, or if the device answers. If the first
-/// is not yours, name yours with lidar_options::model. Valid as long as the lidar. *Never waits.*
-[[nodiscard]] G4LIDAR_API std::span<const model* const> candidates_of(const lidar& of) noexcept;
+/// The candidates of recognition().
+[[nodiscard]] inline std::span<const model* const> candidates_of(const lidar& of) noexcept {
+  return of.recognition().candidates;
+}
 
 /// A lidar in an event loop of the program, which waits for other things, too: poll native_handle()
 /// for reading until next_deadline(), then call process(), which never waits, or next_scan(0ms) until

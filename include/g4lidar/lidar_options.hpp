@@ -57,6 +57,13 @@ struct lidar_options {
   /// that states another model is refused with bad_option, and a device that reports another one
   /// with other_device.
   const g4lidar::model* model = nullptr;
+  /// `model` is certain, whatever the lidar reports: without it, a named lidar is refused that reports the number of
+  /// another model with samples of the same size.
+  bool insist_on_model = false;
+  /// Not a byte is sent: for a data wire alone, or on the wire of a lidar that another computer drives. A lidar that
+  /// waits for commands stays silent. Requests and settings are refused with not_supported. A lidar that sends whole
+  /// packets and does not answer is read so anyhow.
+  bool listen_only = false;
   /// Bits per second, of a serial port and of the one behind `tcp:`; 0: the usual rate of the model.
   std::uint32_t baud = 0;
 

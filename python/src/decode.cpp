@@ -112,6 +112,7 @@ nb::dict counts(decoder& with) {
   all["points"] = now.points;
   all["suspect_packets"] = now.suspect;
   all["time_packets"] = now.time_packets;
+  all["empty_packets"] = now.empty_packets;
   all["crc_matches"] = now.crc_matches;
   all["crc_mismatches"] = now.crc_mismatches;
   for (std::size_t i = 0; i < skip_reasons; ++i) {

@@ -277,6 +277,7 @@ nb::dict dict_of(const lidar_counts& from) {
   all["points"] = from.stream.points;
   all["suspect_packets"] = from.stream.suspect;
   all["time_packets"] = from.stream.time_packets;
+  all["empty_packets"] = from.stream.empty_packets;
   all["crc_matches"] = from.stream.crc_matches;
   all["crc_mismatches"] = from.stream.crc_mismatches;
   for (std::size_t i = 0; i < skip_reasons; ++i) {

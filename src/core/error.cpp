@@ -62,7 +62,8 @@ constexpr std::array<words, problem_count> all_words{{
      "loose cable or another kind of device."},
     {problem::other_device, "other_device",
      "the device that answers is not the model that was expected",
-     "Check the label of the device: name its model, or the port of the other one."},
+     "Check the label of the device: name its model, or the port of the other one. If the named "
+     "model is right, insist on it (option insist_on_model, --model WORD!)."},
     {problem::does_not_stop, "does_not_stop", "it continues to scan and cannot be stopped",
      "Commands do not reach it: check the wire of the host's transmit pin, or unplug the lidar and "
      "plug it in again. A one-way lidar takes no commands: name its model."},
@@ -118,7 +119,7 @@ struct detail_words {
   std::string_view cause;
   std::string_view advice;
 };
-constexpr std::array<detail_words, 19> all_details{{
+constexpr std::array<detail_words, 21> all_details{{
     {"no scan arrived in time, because the motor spins up",
      "Call again or wait longer: the first scan arrives about 0.7 s after the start, later with a "
      "heavy or cold motor. If the head does not turn within 10 s, check the power supply."},
@@ -184,8 +185,13 @@ constexpr std::array<detail_words, 19> all_details{{
     {"parts of this recording state different models of lidar",
      "Recordings of two lidars have been joined, or the file is damaged: use the recording of each "
      "lidar by itself."},
+    {"the packets of the lidar cannot be read as those of the model that was named",
+     "Omit the model (option model, --model): the lidar is then read as its packets show. Or name "
+     "the port of the other lidar."},
+    {"the bytes are those of a device of another kind, which this library does not read",
+     "Use the driver of that device, or name the port of the lidar."},
 }};
-static_assert(all_details.size() == static_cast<std::size_t>(error_detail::several_models));
+static_assert(all_details.size() == static_cast<std::size_t>(error_detail::other_maker));
 
 constexpr bool in_order() {
   for (std::size_t i = 0; i < all_words.size(); ++i) {

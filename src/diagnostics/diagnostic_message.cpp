@@ -46,7 +46,7 @@ diagnostic_status status_of(const lidar_counts& counts, std::string_view hardwar
                          .message = "ok",
                          .hardware_id = std::string(hardware_id)};
   const stream_counts& stream = counts.stream;
-  const std::array<std::pair<const char*, std::uint64_t>, 18> all{{
+  const std::array<std::pair<const char*, std::uint64_t>, 19> all{{
       {"bytes", counts.bytes},
       {"packets", stream.packets},
       {"responses", stream.responses},
@@ -57,6 +57,7 @@ diagnostic_status status_of(const lidar_counts& counts, std::string_view hardwar
       {"skipped_bad_checksum_bytes", stream.skipped(skip_reason::bad_checksum)},
       {"skipped_truncated_bytes", stream.skipped(skip_reason::truncated)},
       {"time_packets", stream.time_packets},
+      {"empty_packets", stream.empty_packets},
       {"crc_matches", stream.crc_matches},
       {"crc_mismatches", stream.crc_mismatches},
       {"samples_lost", counts.samples_lost},

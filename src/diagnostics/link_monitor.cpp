@@ -21,14 +21,6 @@ constexpr std::int64_t stop_ns = 500 * ms;
 /// The number of consecutive letters of a boot text.
 constexpr std::size_t text_letters = 16;
 
-std::size_t size_of(const event& found) noexcept {
-  if (const auto* packet = std::get_if<packet_view>(&found)) return packet->data().size();
-  if (const auto* response = std::get_if<response_view>(&found)) return response->data().size();
-  if (const auto* packet = std::get_if<time_packet_view>(&found)) return packet->data().size();
-  const auto* gone = std::get_if<skipped>(&found);
-  return gone == nullptr ? 0 : gone->count;
-}
-
 }  // namespace
 
 void event_splitter::take(bytes data, std::int64_t arrival_ns, const observer& to) {

@@ -114,7 +114,7 @@ std::unique_ptr<connector> running_diagnosis::observe(std::unique_ptr<connector>
   recorded_event_source* const played = hook != nullptr ? hook->events() : nullptr;
   const connector_traits known = from->traits();
   state_->begin(known.answers, played != nullptr ? &played->device() : nullptr,
-                known.model != nullptr ? *known.model : g4_model);
+                known.recognised.model != nullptr ? *known.recognised.model : g4_model);
   return std::make_unique<observed_connector>(std::move(from), *state_);
 }
 

@@ -133,7 +133,8 @@ void stream_statistics::take(const observed_event& observed) {
   if (const auto* packet = std::get_if<packet_view>(&observed.what)) {
     return take_packet(*packet, observed.arrival_ns);
   }
-  if (std::holds_alternative<time_packet_view>(observed.what)) return;
+  const bool is_empty = std::holds_alternative<empty_packet_view>(observed.what);
+  if (is_empty || std::holds_alternative<time_packet_view>(observed.what)) return;
   between_.has_answers |= std::holds_alternative<response_view>(observed.what);
   between_.size += observed.raw.size();
   since_packet_ += observed.raw.size();

@@ -2,6 +2,8 @@
 #include "lidar_search.hpp"
 
 #include <algorithm>
+#include <iterator>
+#include <span>
 #include <utility>
 
 #include "g4lidar/core/request.hpp"
@@ -10,36 +12,25 @@
 namespace g4lidar {
 namespace {
 
-constexpr std::int64_t ms = 1'000'000;
 /// A G4 that scans sends five packets in it.
-constexpr std::int64_t first_listening_ns = 30 * ms;
+constexpr std::int64_t first_listening_ns = 30'000'000;
 /// The slowest stream, of an X2, has three packets in 50 ms.
-constexpr std::int64_t listening_ns = 120 * ms;
-constexpr std::int64_t answer_ns = 150 * ms;
+constexpr std::int64_t listening_ns = 120'000'000;
+constexpr std::int64_t answer_ns = 150'000'000;
 /// In later rounds: of a device that boots, or behind a slow network.
-constexpr std::int64_t late_answer_ns = 400 * ms;
-/// A lidar that announces itself sends packets right after it.
-constexpr std::int64_t announcement_ns = 40 * ms;
-/// Two revolutions at 4 Hz: the CT bytes of one of them are complete.
-constexpr std::int64_t information_ns = 600 * ms;
-/// One attempt to stop a scan, and a slow answer; or several.
-constexpr std::int64_t one_stop_ns = 700 * ms;
-constexpr std::int64_t stops_ns = 2'000 * ms;
-constexpr std::int64_t look_ns = 50 * ms;  // between two questions whether it is cancelled
-constexpr std::int64_t pulse_ns = 100 * ms;
-constexpr std::int64_t after_pulse_ns = 2'000 * ms;
-constexpr std::int64_t write_ns = 100 * ms;
+constexpr std::int64_t late_answer_ns = 400'000'000;
+constexpr std::int64_t look_ns = 50'000'000;  // between two questions whether it is cancelled
+constexpr std::int64_t pulse_ns = 100'000'000;
+constexpr std::int64_t after_pulse_ns = 2'000'000'000;
+constexpr std::int64_t write_ns = 100'000'000;
 /// Fewer bytes in a time of listening are noise, or the end of a message.
 constexpr std::size_t stream_bytes = 32;
 
-/// Of lidars of the same manufacturer with line sensors: A5 A5 A5 A5, and an address.
-constexpr std::uint8_t foreign_start = 0xA5;
+/// Several of the longest packets: one of them is whole.
+constexpr std::size_t hopeless_bytes = 600;
 
-error refused(const transport& port, std::string_view product) {
-  return {task::asking, problem::other_device,
-          std::string(port.name()).append(", a ").append(product), 0,
-          error_detail::unsupported_product};
-}
+/// The rates at which two-way lidars answer, those with the most users first.
+constexpr std::array<std::uint32_t, 5> asking_rates{230'400, 128'000, 512'000, 115'200, 153'600};
 
 }  // namespace
 
@@ -72,8 +63,7 @@ result<recognised_lidar> lidar_search::find(std::int64_t deadline_ns) {
   deadline_ns_ = deadline_ns;
   for (bool is_first = true; port_.now_ns() < deadline_ns_; is_first = false) {
     auto done = round(is_first);
-    const bool has_time = port_.now_ns() + one_stop_ns + information_ns < deadline_ns_;
-    if (!done && done.error() == problem::does_not_stop && has_time) continue;
+    if (!done && done.error() == problem::does_not_stop) continue;
     if (done && !*done && options_.may_pulse_dtr && sending_ == 0) done = pulse();
     if (!done) return tl::unexpected(done.error());
     // NOLINTNEXTLINE(bugprone-unchecked-optional-access): checked by the caller
@@ -90,23 +80,43 @@ lidar_search::found lidar_search::round(bool is_first) {
     done = question(rates_.front(), is_first ? answer_ns : late_answer_ns);
     if (!done || *done) return done;
   }
-  for (std::size_t i = has_fixed_rate_ ? rates_.size() : 1; i < rates_.size(); ++i) {
+  // What sends at another rate makes bytes at this one, too.
+  const bool is_silent = heard_.bytes == 0 && !only_listens();
+  for (std::size_t i = has_fixed_rate_ || is_silent ? rates_.size() : 1; i < rates_.size(); ++i) {
     done = visit(rates_[i], listening_ns);
     if (!done || *done) return done;
   }
   if (has_fixed_rate_) return done;
-  if (sending_ == rates_.size() && rates_.size() > 1) {
-    for (const std::uint32_t baud : unusual_rates) {
-      done = visit(baud, listening_ns);
-      if (!done || *done) return done;
+  if (sending_ == rates_.size() && options_.baud == 0) {
+    for (const std::span<const std::uint32_t> others :
+         {std::span(usual_rates), std::span(unusual_rates)}) {
+      for (const std::uint32_t baud : others) {
+        if (std::ranges::find(rates_, baud) != rates_.end()) continue;
+        done = visit(baud, listening_ns);
+        if (!done || *done) return done;
+      }
     }
   }
   if (sending_ > 0 || only_listens()) return done;
-  for (std::size_t i = 1; i < rates_.size(); ++i) {
-    done = question(rates_[i], answer_ns);
+  return ask_the_others(is_first ? answer_ns : late_answer_ns);
+}
+
+/// At all rates but the first.
+lidar_search::found lidar_search::ask_the_others(std::int64_t wait_ns) {
+  const auto is_listed = [](const auto& all, std::uint32_t baud) {
+    return std::ranges::find(all, baud) != all.end();
+  };
+  std::vector<std::uint32_t> order;
+  std::ranges::copy_if(asking_rates, std::back_inserter(order),
+                       [&](std::uint32_t baud) { return is_listed(rates_, baud); });
+  std::ranges::copy_if(rates_, std::back_inserter(order),
+                       [&](std::uint32_t baud) { return !is_listed(asking_rates, baud); });
+  std::erase(order, rates_.front());
+  for (const std::uint32_t baud : order) {
+    auto done = question(baud, wait_ns);
     if (!done || *done) return done;
   }
-  return done;
+  return std::nullopt;
 }
 
 /// Whether the port has this rate now, as far as it has one.
@@ -126,16 +136,23 @@ lidar_search::found lidar_search::visit(std::uint32_t baud, std::int64_t listen_
   const auto tuned = tune(baud);
   if (!tuned) return tl::unexpected(tuned.error());
   if (!*tuned) return std::nullopt;
-  const auto is_decided = [this] { return heard_.stream.sample_bytes() != 0; };
-  if (auto done = listen(in_ns(listen_ns), is_decided); !done) return tl::unexpected(done.error());
-  if (heard_.bytes > 0 && !is_decided()) {
-    if (auto done = listen(in_ns(listening_ns), is_decided); !done) {
+  const auto is_decided = [this] {
+    return heard_.stream.sample_bytes() != 0 || heard_.maker.found() != nullptr;
+  };
+  const auto is_enough = [&] { return is_decided() || is_hopeless(); };
+  if (auto done = listen(in_ns(listen_ns), is_enough); !done) return tl::unexpected(done.error());
+  if (heard_.bytes > 0 && !is_enough()) {
+    if (auto done = listen(in_ns(listening_ns), is_enough); !done) {
       return tl::unexpected(done.error());
     }
   }
-  constexpr unsigned enough = 3;
-  if (heard_.foreign >= enough) return tl::unexpected(refused(port_, "GS"));
-  if (is_decided()) return judge_stream();
+  if (heard_.stream.sample_bytes() != 0) return judge_stream();
+  if (!is_decided()) heard_.maker.finish();
+  if (const other_maker* const other = heard_.maker.found()) {
+    return failure(task::asking, problem::other_device,
+                   std::string(port_.name()).append(", ").append(other->product), 0,
+                   error_detail::other_maker);
+  }
   if (heard_.bytes >= stream_bytes) ++sending_;
   return std::nullopt;
 }
@@ -193,6 +210,7 @@ result<void> lidar_search::listen(std::int64_t until_ns, Enough is_enough) {
 
 void lidar_search::take(bytes input) {
   heard_.bytes += input.size();
+  heard_.maker.take(input);
   all_heard_.received(input);
   heard_.stream.take(input);
   heard_.replies.feed(input, [this](const event& each) {
@@ -200,129 +218,10 @@ void lidar_search::take(bytes input) {
     if (reply == nullptr || heard_.device) return;
     heard_.device = reply->as_device_info();
   });
-  for (const std::uint8_t byte : input) {
-    constexpr unsigned start_size = 4;
-    if (heard_.run == start_size && byte < 8) ++heard_.foreign;
-    heard_.run = byte == foreign_start ? heard_.run + 1 : 0;
-  }
 }
 
-// ---- the verdict ----------------------------------------------------------------------------------
-
-lidar_signs lidar_search::signs() const noexcept {
-  lidar_signs all;
-  all.baud = port_.baud();
-  all.is_baud_certain = !has_fixed_rate_ || (options_.baud != 0 && heard_.device);
-  all.sample_bytes = heard_.stream.sample_bytes();
-  all.sample_rate_hz = heard_.stream.rate_hz();
-  if (heard_.device) all.id = heard_.device->model;
-  if (const auto stated = heard_.stream.information()) all.ct_id_low_bits = stated->id_low_bits;
-  return all;
-}
-
-recognised_lidar lidar_search::made(std::vector<const model*> candidates,
-                                    const lidar_signs& of) const {
-  recognised_lidar lidar;
-  lidar.model = options_.model != nullptr ? options_.model : candidates.front();
-  lidar.baud = port_.baud();
-  lidar.was_scanning = of.sample_bytes != 0;
-  if (heard_.device) {
-    lidar.device = *heard_.device;
-  } else if (const auto stated = heard_.stream.information()) {
-    lidar.device = information_of(*stated, *lidar.model);
-  }
-  lidar.candidates = std::move(candidates);
-  return lidar;
-}
-
-/// Packets arrive: at least three more of one size of samples than of the others.
-lidar_search::found lidar_search::judge_stream() {
-  if (only_listens()) return made({options_.model}, signs());
-  const std::int64_t informed_ns = in_ns(information_ns);
-  const auto is_one_way = [](const model* row) { return row->link == link_kind::one_way; };
-  const bool is_doubtful = std::ranges::any_of(models_that_fit(signs()), is_one_way);
-  // A one-way lidar is not to be disturbed: its CT bytes or its sample rate may be sufficient.
-  if (is_doubtful) {
-    const auto is_certain = [this] { return !may_be_two_way(signs()); };
-    if (auto done = listen(informed_ns, is_certain); !done) return tl::unexpected(done.error());
-  }
-  lidar_signs known = signs();
-  if (may_be_two_way(known)) {
-    const auto fitting = models_that_fit(known);
-    const auto like = std::ranges::find_if_not(fitting, is_one_way);
-    const std::optional<device_information> announced = std::exchange(heard_.device, std::nullopt);
-    auto device = stop_and_ask(**like, is_doubtful ? stop_attempts::one : stop_attempts::several);
-    if (!device) return tl::unexpected(device.error());
-    if (*device) {
-      // NOLINTNEXTLINE(bugprone-unchecked-optional-access): checked before
-      heard_.device = **device;
-      known.answers = presence::yes;
-      known.id = heard_.device->model;
-      auto answering = models_that_fit(known);
-      if (answering.empty()) return tl::unexpected(unknown(known.id));
-      return made(std::move(answering), known);
-    }
-    heard_.device = announced;
-  }
-  // It does not answer. Its CT bytes may identify it.
-  known.answers = presence::no;
-  const auto does_not_stop = [this] {
-    return failure(task::asking, problem::does_not_stop, port_.name());
-  };
-  if (models_that_fit(known).empty()) return does_not_stop();
-  const auto is_informed = [this] { return heard_.stream.information().has_value(); };
-  const std::int64_t until_ns = is_doubtful ? informed_ns : in_ns(information_ns);
-  if (auto done = listen(until_ns, is_informed); !done) return tl::unexpected(done.error());
-  known = signs();
-  known.answers = presence::no;
-  auto silent = models_that_fit(known);
-  if (silent.empty()) return does_not_stop();
-  return made(std::move(silent), known);
-}
-
-/// A device information has arrived after the question. A one-way lidar sends one after power-on, and
-/// packets right after it.
-lidar_search::found lidar_search::judge_reply() {
-  lidar_signs known = signs();
-  known.answers = presence::no;
-  if (!models_that_fit(known).empty()) {
-    const auto is_stream = [this] { return heard_.stream.sample_bytes() != 0; };
-    if (auto done = listen(in_ns(announcement_ns), is_stream); !done) {
-      return tl::unexpected(done.error());
-    }
-    if (is_stream()) return judge_stream();
-  }
-  known.answers = presence::yes;
-  auto fitting = models_that_fit(known);
-  if (fitting.empty()) {
-    known.answers = presence::unknown;
-    fitting = models_that_fit(known);
-  }
-  if (!fitting.empty()) return made(std::move(fitting), known);
-  return tl::unexpected(unknown(known.id));
-}
-
-error lidar_search::unknown(std::uint8_t id) const {
-  const std::string_view product = other_product(id);
-  if (!product.empty()) return refused(port_, product);
-  return {task::asking, problem::other_device,
-          std::string(port_.name()) + ", model " + std::to_string(id)};
-}
-
-/// What the device answers after a stop; nothing if it does not.
-result<std::optional<device_information>> lidar_search::stop_and_ask(const model& like,
-                                                                     stop_attempts how) {
-  // If it does not stop, the rest of the time shows what else it may be.
-  const std::int64_t one_ns = in_ns(one_stop_ns);
-  const std::int64_t several_ns = std::min(in_ns(stops_ns), deadline_ns_ - information_ns);
-  auto answered = inquiry(port_, like.samples, how)
-                      .ask(how == stop_attempts::one ? one_ns : std::max(one_ns, several_ns));
-  if (answered) return *answered;
-  const problem why = answered.error().code();
-  if (why == problem::silence || why == problem::garbage || why == problem::does_not_stop) {
-    return std::nullopt;
-  }
-  return tl::unexpected(answered.error());
+bool lidar_search::is_hopeless() const noexcept {
+  return heard_.bytes >= hopeless_bytes && !heard_.stream.has_packet() && !heard_.device;
 }
 
 tl::unexpected<error> lidar_search::not_found() const {

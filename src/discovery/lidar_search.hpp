@@ -12,6 +12,7 @@
 #include "g4lidar/core/layout_recogniser.hpp"
 #include "g4lidar/discovery.hpp"
 #include "model_choice.hpp"
+#include "survey/other_makers.hpp"
 
 namespace g4lidar {
 
@@ -20,9 +21,10 @@ enum class stop_attempts : std::uint8_t;
 /// One search. *Single thread; allocates.*
 ///
 /// Two-way lidars are silent until they are asked; one-way lidars send always, and answer nothing. So it
-/// listens first, and asks only where it is silent: with `90`, two bytes that change nothing. Only a
-/// stream of packets that a two-way lidar may send is stopped, and once where a one-way lidar may send it, too.
-/// A one-way lidar that was named gets no byte.
+/// listens first, and asks only where it is silent: with `90`, two bytes that change nothing. Where nothing at all
+/// arrives, nothing sends at any rate: so it does not listen at the others. Only a stream of packets that a two-way
+/// lidar may send is stopped, and once where a one-way lidar may send it, too. A one-way lidar that was named gets no
+/// byte.
 class lidar_search {
  public:
   lidar_search(transport& port, const search_options& options);
@@ -30,6 +32,11 @@ class lidar_search {
   [[nodiscard]] result<recognised_lidar> run(std::int64_t deadline_ns);
 
  private:
+  /// Two revolutions at 4 Hz: the CT bytes of one of them are complete.
+  static constexpr std::int64_t information_ns = 600'000'000;
+  /// One attempt to stop a scan, and a slow answer; or several.
+  static constexpr std::int64_t one_stop_ns = 700'000'000;
+
   using found = result<std::optional<recognised_lidar>>;
 
   /// What arrived at one rate.
@@ -38,13 +45,13 @@ class lidar_search {
     stream_parser replies =
         stream_parser(g4_format);  // a response is found whatever the size of samples is
     std::optional<device_information> device;
+    maker_recogniser maker;
     std::size_t bytes = 0;
-    unsigned foreign = 0;  // starts of packets of another protocol
-    unsigned run = 0;      // equal start bytes in a row
   };
 
   [[nodiscard]] result<recognised_lidar> find(std::int64_t deadline_ns);
   [[nodiscard]] found round(bool is_first);
+  [[nodiscard]] found ask_the_others(std::int64_t wait_ns);
   [[nodiscard]] found visit(std::uint32_t baud, std::int64_t listen_ns);
   [[nodiscard]] found question(std::uint32_t baud, std::int64_t wait_ns);
   [[nodiscard]] found pulse();
@@ -55,6 +62,9 @@ class lidar_search {
   void take(bytes input);
 
   [[nodiscard]] found judge_stream();
+  [[nodiscard]] found judge_silent(lidar_signs known, std::int64_t until_ns);
+  [[nodiscard]] found judge_named();
+  [[nodiscard]] found judge_number(lidar_signs known);
   [[nodiscard]] found judge_reply();
   [[nodiscard]] result<std::optional<device_information>> stop_and_ask(const model& like,
                                                                        stop_attempts how);
@@ -62,11 +72,13 @@ class lidar_search {
                                       const lidar_signs& signs) const;
   [[nodiscard]] lidar_signs signs() const noexcept;
   [[nodiscard]] tl::unexpected<error> not_found() const;
-  [[nodiscard]] error unknown(std::uint8_t id) const;
-  /// Whether the user has named a lidar that answers nothing.
+  /// Whether nothing is sent: the user wants it so, or has named a lidar that answers nothing.
   [[nodiscard]] bool only_listens() const noexcept {
-    return options_.model != nullptr && options_.model->link == link_kind::one_way;
+    return options_.listen_only ||
+           (options_.model != nullptr && options_.model->link == link_kind::one_way);
   }
+  /// Whether the bytes of this rate cannot be packets.
+  [[nodiscard]] bool is_hopeless() const noexcept;
   [[nodiscard]] std::int64_t in_ns(std::int64_t time_ns) const noexcept;
 
   transport& port_;

@@ -12,11 +12,6 @@
 namespace g4lidar {
 namespace {
 
-bool has_rate(const model& row, std::uint32_t baud) noexcept {
-  return std::ranges::any_of(
-      row.bauds, [baud](std::uint32_t own) { return own != 0 && is_tolerable(baud, own); });
-}
-
 /// The difference between what was measured and the nearest sample rate of the row, in percent.
 std::uint32_t rate_difference(const model& row, std::uint32_t hz) noexcept {
   std::uint32_t least = hz == 0 ? 0 : 100;
@@ -45,6 +40,11 @@ std::size_t move_back(std::vector<const model*>& all, Predicate is_last) {
 bool is_two_way(const model* row) noexcept { return row->link == link_kind::two_way; }
 
 }  // namespace
+
+bool has_rate(const model& row, std::uint32_t baud) noexcept {
+  return std::ranges::any_of(rates_of(row),
+                             [baud](std::uint32_t own) { return is_tolerable(baud, own); });
+}
 
 std::vector<const model*> models_that_fit(const lidar_signs& seen) {
   const auto all_with = [&seen](bool by_rate, bool by_ct) {

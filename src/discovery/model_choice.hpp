@@ -6,6 +6,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -39,6 +40,13 @@ struct lidar_signs {
 /// otherwise. Models with the number as their usual one come before those that some devices report it of.
 /// Empty if there is none. *Allocates.*
 [[nodiscard]] std::vector<const model*> models_that_fit(const lidar_signs& seen);
+
+/// Whether a lidar of this model has such a baud rate, as far as bytes arrive. *Pure.*
+[[nodiscard]] bool has_rate(const model& row, std::uint32_t baud) noexcept;
+/// Its baud rates, the usual one first. *Pure.*
+[[nodiscard]] inline std::span<const std::uint32_t> rates_of(const model& row) noexcept {
+  return std::span(row.bauds).first(row.bauds[1] != 0 ? 2 : 1);
+}
 
 /// Whether a two-way model may send such packets: one fits, and with the sample rate, unless only one-way
 /// models have that. *Allocates.*

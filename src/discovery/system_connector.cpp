@@ -74,7 +74,9 @@ error explained(const error& why, const std::string& device) {
 }  // namespace
 
 system_connector::system_connector(std::string_view device, std::uint32_t baud, const model* named)
-    : device_(device), baud_(baud), named_baud_(baud), named_(named) {}
+    : device_(device), baud_(baud), named_baud_(baud), named_(named) {
+  if (named != nullptr) found_.by = known_by::user;
+}
 
 result<std::unique_ptr<connector>> system_connector::make(std::string_view device,
                                                           std::uint32_t baud, const model* named) {
@@ -82,39 +84,41 @@ result<std::unique_ptr<connector>> system_connector::make(std::string_view devic
 }
 
 result<std::unique_ptr<connector>> system_connector::find(std::string_view device,
-                                                          std::uint32_t baud,
-                                                          const std::function<bool()>& is_cancelled,
-                                                          const model* named) {
-  const std::uint32_t first_baud = named != nullptr ? named->bauds[0] : g4_model.bauds[0];
-  const bool has_one_rate = baud != 0 || (named != nullptr && named->bauds[1] == 0);
-  if (named != nullptr && has_one_rate) return make(device, baud != 0 ? baud : first_baud, named);
-  std::unique_ptr<system_connector> made(
-      new system_connector(device, baud != 0 ? baud : first_baud, named));
+                                                          const search_options& known,
+                                                          bool always) {
+  const model* const named = known.model;
+  const std::uint32_t usual_baud = named != nullptr ? named->bauds[0] : g4_model.bauds[0];
+  const std::uint32_t first_baud = known.baud != 0 ? known.baud : usual_baud;
+  const bool has_one_rate = known.baud != 0 || (named != nullptr && named->bauds[1] == 0);
+  if (named != nullptr && has_one_rate && !always) return make(device, first_baud, named);
+  std::unique_ptr<system_connector> made(new system_connector(device, first_baud, named));
   made->is_searched_ = named == nullptr;
-  made->named_baud_ = baud;
-  if (auto done = made->search_first(is_cancelled); !done) return tl::unexpected(done.error());
+  made->named_baud_ = known.baud;
+  if (auto done = made->search_first(known); !done) return tl::unexpected(done.error());
   return made;
 }
 
-result<void> system_connector::search_first(const std::function<bool()>& is_cancelled) {
+result<void> system_connector::search_first(search_options known) {
   auto opened = connect();
   if (!opened) {
     searched_ = std::move(opened);
     return {};
   }
   transport& port = **opened;
-  auto lidar = search(port, port.now_ns() + opening_search_ns,
-                      {.model = named_,
-                       .baud = named_baud_,
-                       .may_pulse_dtr = named_ != nullptr || names_path(device_),
-                       .is_cancelled = is_cancelled});
+  known.may_pulse_dtr = named_ != nullptr || names_path(device_);
+  auto lidar = search(port, port.now_ns() + opening_search_ns, known);
   if (!lidar) {
     const error why = with_port_conflict(lidar.error(), port);
     return failure(task::opening, why.code(), why.subject(), why.system_errno(), why.detail());
   }
   named_ = lidar->model;
   if (is_searched_) candidates_ = std::move(lidar->candidates);
-  was_stopped_ = lidar->was_scanning && named_->link == link_kind::two_way;
+  found_ = {.by = is_searched_ ? lidar->by : known_by::user,
+            .number = lidar->device.model,
+            .baud = lidar->baud,
+            .is_silent = lidar->is_silent,
+            .was_stopped = lidar->was_scanning && !lidar->is_silent && !known.listen_only &&
+                           named_->link == link_kind::two_way};
   if (lidar->baud != 0) baud_ = lidar->baud;
   if (named_->link == link_kind::one_way) find_place();
   searched_ = std::move(opened);

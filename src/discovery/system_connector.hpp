@@ -34,10 +34,10 @@ class system_connector final : public connector {
   /// The same, but what is not named is searched now: the model where `named` is null, and its rate where `baud` is
   /// 0 and the model has several. The open transport is kept for the first connect(), because each opening raises
   /// DTR. Takes up to 5 s where nothing answers or sends. Fails like search(). If the port cannot be opened, the
-  /// first connect() fails.
-  [[nodiscard]] static result<std::unique_ptr<connector>> find(
-      std::string_view device, std::uint32_t baud, const std::function<bool()>& is_cancelled,
-      const model* named = nullptr);
+  /// first connect() fails. `always`: also if there is nothing to be searched but other rates than those of the model.
+  [[nodiscard]] static result<std::unique_ptr<connector>> find(std::string_view device,
+                                                               const search_options& known,
+                                                               bool always = false);
 
   [[nodiscard]] result<std::unique_ptr<transport>> connect() noexcept override;
   [[nodiscard]] std::int64_t now_ns() const noexcept override { return steady_now_ns(); }
@@ -47,10 +47,10 @@ class system_connector final : public connector {
   [[nodiscard]] int watch() noexcept override;
   [[nodiscard]] bool may_be_back() noexcept override;
   [[nodiscard]] connector_traits traits() const noexcept override {
-    return {.model = named_,
-            .is_searched = is_searched_,
-            .candidates = candidates_,
-            .was_stopped = was_stopped_};
+    recognition known = found_;
+    known.model = named_;
+    known.candidates = candidates_;
+    return {.recognised = known, .is_searched = is_searched_};
   }
 
  private:
@@ -64,7 +64,7 @@ class system_connector final : public connector {
 
   system_connector(std::string_view device, std::uint32_t baud, const model* named);
 
-  [[nodiscard]] result<void> search_first(const std::function<bool()>& is_cancelled);
+  [[nodiscard]] result<void> search_first(search_options known);
   [[nodiscard]] result<std::unique_ptr<transport>> open_transport();
   [[nodiscard]] result<std::unique_ptr<transport>> first_connect();
   [[nodiscard]] result<std::unique_ptr<transport>> connect_again();
@@ -82,7 +82,7 @@ class system_connector final : public connector {
   std::uint32_t baud_;
   std::uint32_t named_baud_;  // 0: it is searched
   bool is_searched_ = false;  // the model
-  bool was_stopped_ = false;
+  recognition found_;
   const model* named_;                                          // or found
   std::vector<const model*> candidates_;                        // found
   std::optional<result<std::unique_ptr<transport>>> searched_;  // for the first connect()

@@ -19,15 +19,16 @@ class device_link {
   /// bytes back for up to 16 ms.
   static constexpr std::int64_t usual_cut_off_ns = 30'000'000;
 
-  /// `input` parses the bytes of `on`, which may be null before follow(). Both must outlive this.
+  /// `input` parses the bytes of `on`, which may be null before follow(). Both must outlive this. `listens`: nothing is
+  /// sent, as to a one-way lidar.
   explicit device_link(event_reader& input, transport* on, const session_times& times = {},
                        std::int64_t cut_off_after_ns = usual_cut_off_ns,
-                       const model& which = g4_model) noexcept
+                       const model& which = g4_model, bool listens = false) noexcept
       : input_(input),
         on_(on),
         session_(times, which),
         cut_off_after_ns_(cut_off_after_ns),
-        listens_(which.link == link_kind::one_way) {}
+        listens_(listens || which.link == link_kind::one_way) {}
 
   /// Another transport: nothing is known about the device.
   void follow(transport& on) noexcept {

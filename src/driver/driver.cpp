@@ -13,7 +13,7 @@ namespace {
 
 std::unique_ptr<scan_source> make_source(scan_source::parts& parts, const lidar_options& options) {
   if (parts.link.from().traits().answers) {
-    if (options.model->link == link_kind::one_way) {
+    if (options.listen_only || options.model->link == link_kind::one_way) {
       return std::make_unique<listening_driver>(parts, options);
     }
     return std::make_unique<live_driver>(parts, options);
@@ -21,19 +21,15 @@ std::unique_ptr<scan_source> make_source(scan_source::parts& parts, const lidar_
   return std::make_unique<replay_player>(parts, options);
 }
 
-std::vector<const model*> candidates_behind(const connector_traits& behind, const model& used) {
-  if (behind.candidates.empty()) return {&used};
-  return {behind.candidates.begin(), behind.candidates.end()};
-}
-
 }  // namespace
 
-lidar::driver::driver(std::unique_ptr<connector> from, const lidar_options& options)
+lidar::driver::driver(std::unique_ptr<connector> from, const lidar_options& options,
+                      const g4lidar::recognition& known)
     : parts_{connection(std::move(from), options.device),
              point_pipeline(options.tuning.transport_delay.count(), options.partial_scans,
                             *options.model),
-             {}},
-      candidates_(candidates_behind(parts_.link.from().traits(), *options.model)),
+             {},
+             {known, *options.model}},
       source_(make_source(parts_, options)),
       points_(largest_scan(*options.model)) {
   if (options.zero_angle)
@@ -43,7 +39,7 @@ lidar::driver::driver(std::unique_ptr<connector> from, const lidar_options& opti
 lidar::driver::~driver() { static_cast<void>(close()); }
 
 result<void> lidar::driver::open() {
-  if (parts_.link.from().traits().was_stopped) {
+  if (parts_.link.from().traits().recognised.was_stopped) {
     parts_.events.put({lidar_event::kind::found_scanning, problem::timeout, parts_.link.now_ns()});
   }
   return source_->open();

@@ -9,7 +9,6 @@
 #include <memory>
 #include <optional>
 #include <span>
-#include <vector>
 
 #include "core/time_limit.hpp"
 #include "g4lidar/lidar.hpp"
@@ -20,7 +19,8 @@ namespace g4lidar {
 /// *Single thread* except wake(). The calls are loops over the steps of the source of the scans.
 class G4LIDAR_HIDDEN lidar::driver {
  public:
-  driver(std::unique_ptr<connector> from, const lidar_options& options);
+  driver(std::unique_ptr<connector> from, const lidar_options& options,
+         const g4lidar::recognition& known);
   driver(const driver&) = delete;
   driver& operator=(const driver&) = delete;
   ~driver();
@@ -65,8 +65,9 @@ class G4LIDAR_HIDDEN lidar::driver {
   [[nodiscard]] std::optional<device_information> module_information() const noexcept {
     return source_->module_information();
   }
-  /// See candidates_of().
-  [[nodiscard]] std::span<const model* const> candidates() const noexcept { return candidates_; }
+  [[nodiscard]] g4lidar::recognition recognition() const noexcept {
+    return parts_.recognised.get();
+  }
   [[nodiscard]] std::string_view name() const noexcept { return parts_.link.name(); }
   [[nodiscard]] bool is_scanning() const noexcept { return source_->is_scanning(); }
   [[nodiscard]] lidar_counts counts() const noexcept;
@@ -85,7 +86,6 @@ class G4LIDAR_HIDDEN lidar::driver {
   }
 
   scan_source::parts parts_;
-  std::vector<const model*> candidates_;  // at least one
   std::unique_ptr<scan_source> source_;
   point_storage points_;
   bool hands_points_over_ = false;  // by next_points()

@@ -53,6 +53,8 @@ class event_reader {
 
   [[nodiscard]] const stream_parser& parser() const noexcept { return parser_; }
 
+  /// The packets that follow are of another format. Bytes that are held are dropped.
+  void become(sample_format format) noexcept { parser_ = stream_parser(format); }
   /// See stream_parser::set_layout().
   void set_layout(sample_layout layout) noexcept { parser_.set_layout(layout); }
 

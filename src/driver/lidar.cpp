@@ -63,9 +63,16 @@ result<lidar> lidar::open(const lidar_options& options) {
   used.wrap = nullptr;
   used.is_cancelled = nullptr;
   while (true) {
-    auto from = connector_for(options);
-    if (from && options.wrap) from = options.wrap(*std::move(from));
-    auto opened = from ? open(*std::move(from), used) : tl::unexpected(from.error());
+    const auto open_at = [&](bool at_any_rate) {
+      auto from = connector_for(options, at_any_rate);
+      if (from && options.wrap) from = options.wrap(*std::move(from));
+      return from ? open(*std::move(from), used) : tl::unexpected(from.error());
+    };
+    auto opened = open_at(false);
+    // Something sends there, and not as the named model does at its rate; or it sends, and answers nothing.
+    const bool is_other = !opened && ((opened.error() == problem::garbage && options.baud == 0) ||
+                                      opened.error() == problem::does_not_stop);
+    if (is_other && kind_of_source(options.device) == source_kind::device) opened = open_at(true);
     const auto waited_for = std::chrono::steady_clock::now() - begin;
     const bool is_late =
         std::chrono::duration_cast<milliseconds>(waited_for) >= options.device_wait;
@@ -82,7 +89,7 @@ result<lidar> lidar::open(std::string_view device, const lidar_options& options)
 
 result<lidar> lidar::open(std::unique_ptr<connector> from, const lidar_options& options) {
   const connector_traits behind = from->traits();
-  const model* const stated = behind.model;
+  const model* const stated = behind.recognised.model;
   if (options.model != nullptr && stated != nullptr && options.model->word != stated->word) {
     return failure(task::opening, problem::bad_option,
                    "model: " + std::string(options.model->word) + ", and the source states " +
@@ -90,6 +97,7 @@ result<lidar> lidar::open(std::unique_ptr<connector> from, const lidar_options& 
   }
   lidar_options used = options;
   if (stated != nullptr) used.model = stated;
+  if (behind.recognised.is_silent) used.listen_only = true;
   if (used.model == nullptr) used.model = &g4_model;
   const option_users users = behind.answers ? live : recording | raw_file | pipe;
   if (const auto wrong = problem_with_users(used, users)) return tl::unexpected(*wrong);
@@ -97,9 +105,11 @@ result<lidar> lidar::open(std::unique_ptr<connector> from, const lidar_options& 
   const bool is_missing = behind.is_searched && stated == nullptr;
   if (const auto wrong = problem_with_use(used)) return tl::unexpected(*wrong);
   if (const auto wrong = problem_with_settings(used); wrong && !is_missing) {
-    return tl::unexpected(with_candidates(*wrong, behind.candidates));
+    return tl::unexpected(with_candidates(*wrong, behind.recognised.candidates));
   }
-  auto made = std::make_unique<driver>(std::move(from), used);
+  g4lidar::recognition known = behind.recognised;
+  if (options.model != nullptr && stated == nullptr) known.by = known_by::user;
+  auto made = std::make_unique<driver>(std::move(from), used, known);
   if (auto opened = made->open(); !opened) return tl::unexpected(opened.error());
   return lidar(std::move(made));
 }
@@ -110,9 +120,10 @@ result<void> lidar::close() { return driver_ ? driver_->close() : result<void>()
 void lidar::release() noexcept {
   if (driver_) driver_->release();
 }
-std::span<const model* const> candidates_of(const lidar& of) noexcept {
+g4lidar::recognition lidar::recognition() const noexcept {
   static constexpr const model* none[] = {&g4_model};
-  return of.driver_ ? of.driver_->candidates() : none;
+  if (driver_) return driver_->recognition();
+  return {.model = &g4_model, .candidates = none};
 }
 lidar_event_loop lidar::event_loop() & noexcept { return lidar_event_loop(*this); }
 milliseconds lidar_event_loop::scan_due_in() const noexcept {

@@ -31,6 +31,7 @@ result<void> listening_driver::round(std::int64_t deadline_ns) {
   if (auto looked = look(); !looked || stage_ == live_stage::idle) return looked;
   if (auto got = stream_.receive(std::min(deadline_ns, due_ns())); !got) return got;
   if (stream_.parse()) return {};
+  if (auto same = follow_samples(); !same) return same;
   return look();
 }
 
@@ -162,7 +163,7 @@ result<answer> listening_driver::ask(const request& wanted, while_scanning /*how
   if (wanted.what == request_kind::health && condition) return *condition;
   const error refused = refusal_error(task::asking, refusal::not_supported, wanted, *options_.model,
                                       connection_.name());
-  return tl::unexpected(with_candidates(refused, connection_.from().traits().candidates));
+  return tl::unexpected(with_candidates(refused, recognised_.get().candidates));
 }
 
 }  // namespace g4lidar

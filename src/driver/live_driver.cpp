@@ -40,6 +40,7 @@ result<void> live_driver::round(std::int64_t deadline_ns) {
   const std::int64_t until = *has_outcome ? now_ns() : std::min(deadline_ns, due_ns());
   if (auto got = stream_.receive(until); !got) return got;
   if (stream_.parse()) return {};
+  if (auto same = follow_samples(); !same) return same;
   if (stream_.reported().take_news()) {
     const auto& who = stream_.reported().who();
     if (information_.is_known() && who != information_) module_ = who;

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "live_source.hpp"
 
+#include <algorithm>
+#include <cerrno>
 #include <chrono>
+#include <new>
 #include <utility>
 
+#include "discovery/model_choice.hpp"
 #include "outcome_error.hpp"
 
 namespace g4lidar {
@@ -105,9 +109,10 @@ result<void> live_source::settle() {
 }
 
 result<void> live_source::identified(const device_information& who) {
-  if (const auto other = other_device_error(who, *options_.model, connection_.name())) {
-    return tl::unexpected(*other);
-  }
+  const auto other = other_device_error(who, *options_.model, connection_.name());
+  if (other && refuses(who)) return tl::unexpected(*other);
+  recognised_.set_device(who.model, connection_.on().baud());
+  if (other) report(lidar_event::kind::other_number);
   // A one-way lidar may state its number before its serial number.
   const bool is_part = options_.model->link == link_kind::one_way &&
                        !(who.has_serial_number() && information_.has_serial_number());
@@ -120,6 +125,43 @@ result<void> live_source::identified(const device_information& who) {
   const bool keeps_serial = is_part && information_.has_serial_number();
   information_ = who;
   if (keeps_serial) information_.serial_digits = serial_digits;
+  return {};
+}
+
+/// Whether the number of another model ends it: nothing that the device will send can decide. A model that was stated is
+/// right where the samples of the other one have another size, or its line another rate. What was recognised by its
+/// samples has another number anyhow.
+bool live_source::refuses(const device_information& who) const noexcept {
+  if (options_.insist_on_model || recognised_.get().by == known_by::samples) return false;
+  const model& stated = *options_.model;
+  if (stated.link == link_kind::one_way) return true;
+  const std::uint32_t baud = connection_.on().baud();
+  return std::ranges::any_of(models, [&](const model& row) {
+    const bool has_number = std::ranges::find(row.ids, who.model) != row.ids.end();
+    return has_number && sample_size(row.samples.layout) == sample_size(stated.samples.layout) &&
+           (baud == 0 || has_rate(row, baud));
+  });
+}
+
+/// The samples have another size than those of the model: they decide, unless the user does.
+result<void> live_source::follow_samples() {
+  const std::size_t size = pipeline_.other_sample_bytes();
+  if (size == 0) return {};
+  if (recognised_.is_stated())
+    return tl::unexpected(other_samples_error(size, *options_.model, connection_.name()));
+  try {
+    auto fitting = models_that_fit({.baud = connection_.on().baud(),
+                                    .sample_bytes = size,
+                                    .answers = stream_.listens() ? presence::no : presence::yes});
+    if (fitting.empty())
+      return tl::unexpected(other_samples_error(size, *options_.model, connection_.name()));
+    recognised_.become(std::move(fitting));
+    options_.model = recognised_.get().model;
+    stream_.become(*options_.model);
+  } catch (const std::bad_alloc&) {
+    return failure(task::reading, problem::system, connection_.name(), ENOMEM);
+  }
+  report(lidar_event::kind::other_number);
   return {};
 }
 

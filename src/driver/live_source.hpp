@@ -48,6 +48,10 @@ class live_source : public scan_source {
   /// model.
   [[nodiscard]] result<void> identified(const device_information& who);
 
+  /// Reads the bytes as those of another model if their samples have another size. Everything that was received is
+  /// parsed. An error if the model was stated.
+  [[nodiscard]] result<void> follow_samples();
+
   // ---- the driver of the device ----
 
   /// A connection was opened: begins to identify the device.
@@ -72,6 +76,7 @@ class live_source : public scan_source {
  private:
   [[nodiscard]] result<void> advance(std::int64_t deadline_ns) final;
   [[nodiscard]] result<void> connect();
+  [[nodiscard]] bool refuses(const device_information& who) const noexcept;
   [[nodiscard]] result<void> hang_up();
 };
 

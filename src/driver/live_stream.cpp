@@ -23,9 +23,9 @@ live_stream::live_stream(const parts& of, const lidar_options& options)
     : of_(of),
       pace_(options.tuning.pace),
       link_(of.pipeline.input(), nullptr, times_for(options.tuning), device_link::usual_cut_off_ns,
-            *options.model),
+            *options.model, options.listen_only),
       motor_(options.model->motor),
-      reported_(*options.model),
+      reported_(*options.model, link_.listens()),
       sample_rate_hz_(first_rate_hz(*options.model)) {}
 
 void live_stream::begin() {
@@ -144,6 +144,17 @@ result<void> live_stream::set_motor(bool on) {
   if (!on) motor_ready_ns_ = now_ns() + low_ns;
   record(on ? recorded_event::kind::dtr_high : recorded_event::kind::dtr_low);
   return {};
+}
+
+void live_stream::become(const model& which) {
+  talk().become(which);
+  reported_ = identity_reader(which, link_.listens());
+  motor_ = which.motor;
+  sample_rate_hz_ = first_rate_hz(which);
+  of_.from.become(which);
+  of_.from.reset(of_.on.on().baud(), of_.on.on().kept_bytes(), now_ns());
+  of_.pipeline.become(which, of_.on.on().baud());
+  record(recorded_event::kind::begun);
 }
 
 void live_stream::learn(const answer& heard) {

@@ -37,6 +37,8 @@ class live_stream {
   [[nodiscard]] session& talk() noexcept { return link_.talk(); }
   [[nodiscard]] const session& talk() const noexcept { return link_.talk(); }
 
+  /// Whether nothing is sent to the device.
+  [[nodiscard]] bool listens() const noexcept { return link_.listens(); }
   /// What the device has reported unasked.
   [[nodiscard]] identity_reader& reported() noexcept { return reported_; }
   /// What was received and sent since the connection was opened, or since begin_request().
@@ -64,6 +66,8 @@ class live_stream {
   void follow_delivery();
   /// The motor is started, or was interrupted: the points that follow are a new stream.
   void begin_points();
+  /// The device is one like `which`, and goes on. Only if everything that was received is parsed.
+  void become(const model& which);
   /// Uses the sample rate, if it is the answer.
   void learn(const answer& heard);
 

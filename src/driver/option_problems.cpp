@@ -64,6 +64,8 @@ constexpr option_users any_file = recording | raw_file;
 /// The options that not every source can use.
 constexpr std::array option_rows{
     row("baud", live, [](auto& of) -> auto& { return of.baud; }),
+    row("insist_on_model", live, [](auto& of) -> auto& { return of.insist_on_model; }),
+    row("listen_only", live, [](auto& of) -> auto& { return of.listen_only; }),
     row("sample_rate", live, [](auto& of) -> auto& { return of.sample_rate; }),
     row("frequency", live, [](auto& of) -> auto& { return of.frequency; }),
     row("direction", live, [](auto& of) -> auto& { return of.direction; }),
@@ -126,9 +128,10 @@ std::optional<error> problem_with_settings(const lidar_options& options) noexcep
     if (found || !setting) return;
     const setting_info& of = *setting_of(*setting);
     const request change = requests::set(*setting);
-    if (!has_request(which, change.what)) {
-      found.emplace(task::configuring, problem::not_supported,
-                    error_context(of.name).add(", ").add(which.name));
+    if (options.listen_only || !has_request(which, change.what)) {
+      found.emplace(
+          task::configuring, problem::not_supported,
+          error_context(of.name).add(", ").add(options.listen_only ? "listen_only" : which.name));
     } else if (!is_possible(change, which)) {
       found = bad_setting(of, which, change.value);
     }

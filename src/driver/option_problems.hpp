@@ -3,10 +3,12 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 
 #include "g4lidar/error.hpp"
 #include "g4lidar/lidar_options.hpp"
+#include "g4lidar/transport/connector.hpp"
 
 namespace g4lidar {
 
@@ -27,6 +29,10 @@ using option_users = std::uint8_t;
                                                       option_users users) noexcept;
 /// The same options without these. *Pure.*
 [[nodiscard]] lidar_options without_others(lidar_options options, option_users users);
+
+/// As connector_for(): `at_any_rate`: a named model is searched at other rates than its own, too.
+[[nodiscard]] result<std::unique_ptr<connector>> connector_for(const lidar_options& options,
+                                                               bool at_any_rate);
 
 /// With all else. *Pure.*
 [[nodiscard]] std::optional<error> problem_with_use(const lidar_options& options) noexcept;

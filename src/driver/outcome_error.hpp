@@ -101,6 +101,22 @@ namespace g4lidar {
   return {why.doing(), why.code(), about.add(")"), why.system_errno(), why.detail()};
 }
 
+/// Of packets with samples of another size than the model has, which was stated.
+[[nodiscard]] inline error other_samples_error(std::size_t sample_bytes, const model& which,
+                                               std::string_view device) noexcept {
+  const auto own = static_cast<std::uint32_t>(sample_size(which.samples.layout));
+  const error_context about = error_context(device)
+                                  .add(", packets with samples of ")
+                                  .add(static_cast<std::uint32_t>(sample_bytes))
+                                  .add(" bytes, and ")
+                                  .add(article_of(which))
+                                  .add(" ")
+                                  .add(which.name)
+                                  .add(" has ")
+                                  .add(own);
+  return {task::reading, problem::other_device, about, 0, error_detail::other_samples};
+}
+
 /// The error of a device that reports a model other than `which`; nothing if it may be `which`. The answer
 /// of a two-way lidar is one of the numbers of its model. What a one-way lidar reports may be another one.
 [[nodiscard]] inline std::optional<error> other_device_error(const device_information& who,

@@ -7,6 +7,7 @@ namespace g4lidar {
 
 const event* point_pipeline::next() noexcept {
   const bool has_bytes = !input_.unparsed().empty();
+  if (sizes_ && has_bytes) watch_sizes();
   const event* const found = input_.next();
   if (found != nullptr) {
     stream_counts_.add(*found);
@@ -25,6 +26,26 @@ void point_pipeline::learn(const response_view& heard) noexcept {
   const auto stated = replies_.take(heard, decoder_.like());
   if (stated.firmware) identified(*stated.firmware);
   if (stated.zero) zero().set(*stated.zero, zero_offset::known_by::device);
+}
+
+/// Once for the bytes of a read.
+void point_pipeline::watch_sizes() noexcept {
+  if (!delivers_ || input_.events_of_reading() > 0 || input_.current() != nullptr) return;
+  sizes_->take(input_.unparsed());
+  if (sizes_->is_settled()) sizes_.reset();
+}
+
+void point_pipeline::become(const model& which, std::uint32_t baud) {
+  end();
+  drop_scan();
+  which_ = &which;
+  input_.become(which.samples);
+  decoder_.become(which);
+  decoder_.forget();
+  decoder_.follow(baud);
+  storage_.resize(largest_scan(which));
+  assembler_ = scan_assembler(storage_.all(), which);
+  begin(first_rate_hz(which));
 }
 
 void point_pipeline::identified(const device_information& who) noexcept {
@@ -96,6 +117,7 @@ void point_pipeline::begin(std::uint32_t sample_rate_hz) noexcept {
   decoder_.begin(sample_rate_hz);
   stream_counts_.crc = {};
   assembler_.set_sample_rate(sample_rate_hz);
+  sizes_.emplace(sample_size(which_->samples.layout));
 }
 
 void point_pipeline::end() noexcept {

@@ -14,6 +14,7 @@
 #include <optional>
 #include <span>
 #include <type_traits>
+#include <utility>
 
 #include "event_reader.hpp"
 #include "g4lidar/core/reply_watch.hpp"
@@ -21,6 +22,7 @@
 #include "g4lidar/core/sensor_clock.hpp"
 #include "g4lidar/core/stream_counter.hpp"
 #include "g4lidar/lidar.hpp"
+#include "sample_size_watch.hpp"
 #include "timed_decoder.hpp"
 
 namespace g4lidar {
@@ -36,6 +38,13 @@ class point_storage {
   point_storage(const point_storage&) = delete;
   point_storage& operator=(const point_storage&) = delete;
   ~point_storage() { ::operator delete(points_); }
+
+  /// Room for other points: those before are destroyed.
+  void resize(std::size_t count) {
+    auto* const made = static_cast<point*>(::operator new(count * sizeof(point)));
+    ::operator delete(std::exchange(points_, made));
+    count_ = count;
+  }
 
   [[nodiscard]] std::span<point> all() noexcept { return {points_, count_}; }
 
@@ -138,6 +147,13 @@ class point_pipeline {
   void sent(bytes command) noexcept { replies_.sent(command); }
   /// Packets are read as the firmware of this device sends them.
   void identified(const device_information& who) noexcept;
+  /// The size of the samples since begin(), if it is not that of the model, and certain; else 0.
+  [[nodiscard]] std::size_t other_sample_bytes() const noexcept {
+    return sizes_ ? sizes_->other() : 0;
+  }
+  /// The bytes that follow are those of a lidar like `which`, whatever the size of its samples: a new stream of points
+  /// begins with the usual sample rate. Only if is_empty(). *Allocates.*
+  void become(const model& which, std::uint32_t baud);
   /// What is added to all angles.
   [[nodiscard]] zero_offset& zero() noexcept { return decoder_.zero(); }
 
@@ -188,6 +204,7 @@ class point_pipeline {
   void learn(const response_view& heard) noexcept;
   void add(packet_view packet) noexcept;
   void keep(const scan& found) noexcept;
+  void watch_sizes() noexcept;
 
   const model* which_;  // as given, whatever the firmware
   bool partial_scans_;
@@ -205,6 +222,7 @@ class point_pipeline {
   lidar_counts counts_;
   std::uint64_t points_ = 0;  // decoded
   stream_counter stream_counts_;
+  std::optional<sample_size_watch> sizes_;  // until they are as expected
 };
 
 }  // namespace g4lidar

@@ -33,6 +33,9 @@ class receiver {
     read_until_ns_ = now_ns;
   }
 
+  /// What is received comes from a lidar like `which`. Before reset().
+  void become(const model& which) noexcept { pace_ = read_schedule(which); }
+
   /// One read, which waits until bytes arrive or the deadline. The result is valid until the next
   /// read. `held` bytes of a packet have arrived, and at least `missing` have not.
   [[nodiscard]] result<received> receive(transport& from, reading how, std::size_t held,

@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "discovery/model_choice.hpp"
 #include "error_context.hpp"
 #include "g4lidar/recording/recorded_device.hpp"
 
@@ -138,8 +139,26 @@ result<void> replay_player::advance(std::int64_t deadline_ns) {
   is_pause_reported_ = false;
   if (const auto command = std::exchange(next_.sent, std::nullopt)) pipeline_.sent(*command);
   pipeline_.input().feed(receiver_.buffer().first(got->count), got->arrival_ns);
-  static_cast<void>(parse_bytes());
+  if (!parse_bytes()) follow_samples();
   return check();
+}
+
+/// The bytes are read as those of another model if their samples have another size, as the driver did that recorded them.
+void replay_player::follow_samples() {
+  const std::size_t size = pipeline_.other_sample_bytes();
+  const recognition now = recognised_.get();
+  if (size == 0 || now.by == known_by::user) return;
+  const bool answers = now.model->link == link_kind::two_way;
+  auto fitting = models_that_fit({.baud = connection_.on().baud(),
+                                  .sample_bytes = size,
+                                  .answers = answers ? presence::yes : presence::no});
+  if (fitting.empty()) return;
+  recognised_.become(std::move(fitting));
+  const model& which = *recognised_.get().model;
+  stated_.identity = identity_reader(which, true);
+  sample_rate_hz_ = first_rate_hz(which);
+  pipeline_.become(which, connection_.on().baud());
+  report(lidar_event::kind::other_number);
 }
 
 /// Whether reading the file was not cancelled by then.

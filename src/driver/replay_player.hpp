@@ -46,6 +46,8 @@ class replay_player final : public scan_source {
   void add_to(lidar_counts& counts) const noexcept override { counts.reconnects = lost_.ended; }
 
  private:
+  void follow_samples();
+
   enum class stage : std::uint8_t {
     closed,
     idle,     ///< Reads, and produces no points.

@@ -7,11 +7,13 @@
 #include <optional>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "connection.hpp"
 #include "event_queue.hpp"
 #include "g4lidar/core/session.hpp"
 #include "g4lidar/detail/saturating.hpp"
+#include "g4lidar/recognition.hpp"
 #include "g4lidar/recording/player.hpp"
 #include "g4lidar/recording/recorded_event.hpp"
 #include "point_pipeline.hpp"
@@ -38,6 +40,41 @@ struct scan_expectation {
   return is_moving ? error_detail::no_revolution : error_detail::usual;
 }
 
+/// As which model a source is read, with its own memory for the candidates.
+class kept_recognition {
+ public:
+  /// `used`: where nothing is known.
+  kept_recognition(const recognition& found, const model& used)
+      : what_(found), candidates_(found.candidates.begin(), found.candidates.end()) {
+    what_.model = &used;
+    if (candidates_.empty()) candidates_ = {&used};
+  }
+  /// Valid as long as this, and until become().
+  [[nodiscard]] recognition get() const noexcept {
+    recognition now = what_;
+    now.candidates = candidates_;
+    return now;
+  }
+  /// Whether the user, a recording or the name of the source states the model.
+  [[nodiscard]] bool is_stated() const noexcept {
+    return what_.by == known_by::user || what_.by == known_by::recording;
+  }
+  void set_device(std::uint8_t number, std::uint32_t baud) noexcept {
+    if (number != 0) what_.number = number;
+    if (baud != 0) what_.baud = baud;
+  }
+  /// Its samples show another model than its number. `candidates` is not empty.
+  void become(std::vector<const model*> candidates) noexcept {
+    candidates_ = std::move(candidates);
+    what_.model = candidates_.front();
+    what_.by = known_by::samples;
+  }
+
+ private:
+  recognition what_;
+  std::vector<const model*> candidates_;
+};
+
 /// *Single thread.* The pipeline, the connection and the events must outlive it.
 class scan_source {
  public:
@@ -46,12 +83,14 @@ class scan_source {
     connection link;
     point_pipeline pipeline;
     event_queue events;
+    kept_recognition recognised;
   };
 
   scan_source(parts& of, const lidar_options& options)
       : connection_(of.link),
         pipeline_(of.pipeline),
         events_(of.events),
+        recognised_(of.recognised),
         receiver_(options.tuning.batch, *options.model) {}
   virtual ~scan_source() = default;
   scan_source(const scan_source&) = delete;
@@ -126,6 +165,7 @@ class scan_source {
   connection& connection_;
   point_pipeline& pipeline_;
   event_queue& events_;
+  kept_recognition& recognised_;
   std::atomic<bool> takes_points_ = false;
   receiver receiver_;
   spin_up spin_up_;

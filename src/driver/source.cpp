@@ -58,6 +58,13 @@ option_user user_of(std::string_view name) {
   return user_of(kind_of_source(name), path_of_source(name));
 }
 
+search_options known_of(const lidar_options& options, const model* named) {
+  return {.model = named,
+          .baud = options.baud,
+          .listen_only = options.listen_only,
+          .is_cancelled = options.is_cancelled};
+}
+
 #if defined(G4LIDAR_HAS_SIM)
 /// To the port of a simulated lidar, which it owns.
 class simulated_connector final : public forwarding_connector {
@@ -67,7 +74,7 @@ class simulated_connector final : public forwarding_connector {
 
   [[nodiscard]] connector_traits traits() const noexcept override {
     connector_traits known = forwarding_connector::traits();
-    known.model = &model_of(of_);
+    known.recognised = {.model = &model_of(of_), .by = known_by::recording};
     return known;
   }
   [[nodiscard]] const sim::simulated_source& source() const noexcept { return of_; }
@@ -81,16 +88,16 @@ class simulated_connector final : public forwarding_connector {
   sim::simulated_source of_;
 };
 
-result<std::unique_ptr<connector>> connect_simulated(const lidar_options& options) {
+result<std::unique_ptr<connector>> connect_simulated(const lidar_options& options, bool always) {
   auto made = sim::open_simulated(options.device);
   if (!made) return tl::unexpected(made.error());
-  auto inner = system_connector::find(made->port->path(), options.baud, options.is_cancelled,
-                                      &simulated_connector::model_of(*made));
+  auto inner = system_connector::find(
+      made->port->path(), known_of(options, &simulated_connector::model_of(*made)), always);
   if (!inner) return inner;
   return std::make_unique<simulated_connector>(*std::move(inner), *std::move(made));
 }
 #else
-result<std::unique_ptr<connector>> connect_simulated(const lidar_options& options) {
+result<std::unique_ptr<connector>> connect_simulated(const lidar_options& options, bool) {
   return failure(task::opening, problem::bad_option, options.device, 0, error_detail::no_simulator);
 }
 #endif
@@ -99,7 +106,7 @@ result<std::unique_ptr<connector>> connect_simulated(const lidar_options& option
 result<std::unique_ptr<connector>> of_model(result<std::unique_ptr<connector>> from,
                                             const model* named) {
   if (!from || named == nullptr) return from;
-  const model* const stated = (*from)->traits().model;
+  const model* const stated = (*from)->traits().recognised.model;
   if (stated == nullptr || stated->word == named->word) return from;
   return failure(task::opening, problem::bad_option,
                  "model: " + std::string(named->word) + ", and the recording states " +
@@ -167,6 +174,10 @@ result<const model*> model_of_source(std::string_view name,
 }
 
 result<std::unique_ptr<connector>> connector_for(const lidar_options& options) {
+  return connector_for(options, false);
+}
+
+result<std::unique_ptr<connector>> connector_for(const lidar_options& options, bool at_any_rate) {
   const std::string path = path_of_source(options.device);
   const source_kind kind = kind_of_source(options.device);
   const auto named = model_in_source(options.device);
@@ -194,11 +205,11 @@ result<std::unique_ptr<connector>> connector_for(const lidar_options& options) {
       return open_raw_bytes(path, options.raw_sample_rate_hz, options.playback,
                             options.is_cancelled, wanted);
     case source_kind::simulated:
-      return connect_simulated(options);
+      return connect_simulated(options, at_any_rate);
     case source_kind::device:
       break;
   }
-  return system_connector::find(path, options.baud, options.is_cancelled, wanted);
+  return system_connector::find(path, known_of(options, wanted), at_any_rate);
 }
 
 std::optional<error> problem_with_source(const lidar_options& options) {

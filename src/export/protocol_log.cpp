@@ -152,22 +152,15 @@ void protocol_log::settle() {
 
 void protocol_log::take(const event& found) {
   counts_.add(found);
-  std::size_t size = 0;
+  const std::size_t size = size_of(found);
   if (const auto* gone = std::get_if<skipped>(&found)) {
-    size = gone->count;
     take(*gone);
-  } else if (const auto* packet = std::get_if<packet_view>(&found)) {
+  } else {
     settle();
-    size = packet->data().size();
-    take(*packet);
-  } else if (const auto* response = std::get_if<response_view>(&found)) {
-    settle();
-    size = response->data().size();
-    take(*response);
-  } else if (const auto* time = std::get_if<time_packet_view>(&found)) {
-    settle();
-    size = time->data().size();
-    take(*time);
+    if (const auto* packet = std::get_if<packet_view>(&found)) take(*packet);
+    if (const auto* response = std::get_if<response_view>(&found)) take(*response);
+    if (const auto* time = std::get_if<time_packet_view>(&found)) take(*time);
+    if (const auto* empty = std::get_if<empty_packet_view>(&found)) take(*empty);
   }
   taken_ += size;
   place_ += size;
@@ -187,6 +180,10 @@ void protocol_log::take(time_packet_view packet) {
   if (style_.errors) return;
   const std::string words = "time packet: " + std::to_string(packet.milliseconds()) + " ms";
   write_line('<', words, packet.data(), now_ns_, place_);
+}
+
+void protocol_log::take(empty_packet_view packet) {
+  if (!style_.errors) write_line('<', "packet without samples", packet.data(), now_ns_, place_);
 }
 
 void protocol_log::take(skipped gone) {

@@ -62,8 +62,8 @@ class file_connector final : public connector, public recording_hook {
     return {.answers = false,
             .counts_time = is_counted,
             .wall_ahead_ns = of_->wall_ahead_ns(),
-            .model = &of_->items().source().model(),
-            .is_usual_model = of_->items().source().is_usual_model()};
+            .recognised = {.model = &of_->items().source().model(),
+                           .by = of_->items().source().recognised_by()}};
   }
   [[nodiscard]] played_file* file() const noexcept { return of_.get(); }
 

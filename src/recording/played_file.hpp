@@ -38,8 +38,8 @@ class item_source {
   [[nodiscard]] virtual std::int64_t last_ns() noexcept = 0;
   /// What sent the bytes. Valid as long as this.
   [[nodiscard]] virtual const g4lidar::model& model() const noexcept = 0;
-  /// See connector_traits.
-  [[nodiscard]] virtual bool is_usual_model() const noexcept { return false; }
+  /// From what model() is known.
+  [[nodiscard]] virtual known_by recognised_by() const noexcept { return known_by::recording; }
   /// Null: raw bytes, which have neither events nor times of a device.
   [[nodiscard]] virtual const recording_reader* recording() const noexcept { return nullptr; }
 

@@ -122,9 +122,8 @@ class pipe_transport final : public transport {
 /// Returns its transport once.
 class pipe_connector final : public connector {
  public:
-  /// `is_usual`: as in connector_traits.
-  pipe_connector(std::unique_ptr<pipe_transport> port, const model& which, bool is_usual)
-      : port_(std::move(port)), model_(&which), is_usual_(is_usual) {}
+  pipe_connector(std::unique_ptr<pipe_transport> port, const model& which, known_by by)
+      : port_(std::move(port)), model_(&which), by_(by) {}
 
   [[nodiscard]] result<std::unique_ptr<transport>> connect() noexcept override {
     if (port_ == nullptr) return failure(task::opening, problem::end_of_input);
@@ -134,13 +133,13 @@ class pipe_connector final : public connector {
   [[nodiscard]] bool pause(std::int64_t) noexcept override { return true; }
   void wake() noexcept override {}
   [[nodiscard]] connector_traits traits() const noexcept override {
-    return {.answers = false, .model = model_, .is_usual_model = is_usual_};
+    return {.answers = false, .recognised = {.model = model_, .by = by_}};
   }
 
  private:
   std::unique_ptr<pipe_transport> port_;
   const model* model_;
-  bool is_usual_;
+  known_by by_;
 };
 
 /// The bytes of a file: their times are counted from samples.
@@ -149,7 +148,7 @@ class counted_items final : public item_source {
   /// Of the file behind `fd` from `at` on, whose first sample was measured at `wall_ns`.
   counted_items(std::shared_ptr<const owned_fd> fd, off_t at, std::string name,
                 std::uint32_t sample_rate_hz, std::int64_t wall_ns, std::int64_t to_ns,
-                std::function<bool()> is_cancelled, const recognised_model& found)
+                std::function<bool()> is_cancelled, const g4lidar::model& which, known_by by)
       : fd_(std::move(fd)),
         file_begin_(at),
         name_(std::move(name)),
@@ -157,8 +156,8 @@ class counted_items final : public item_source {
         wall_ahead_ns_(wall_ns - file_begin_ns),
         to_ns_(detail::saturating_add(file_begin_ns, to_ns)),
         is_cancelled_(std::move(is_cancelled)),
-        model_(found.which),
-        is_usual_(found.is_usual()) {}
+        model_(&which),
+        by_(by) {}
 
   [[nodiscard]] result<std::optional<recorded_item>> next() noexcept override {
     while (true) {
@@ -186,14 +185,14 @@ class counted_items final : public item_source {
   [[nodiscard]] std::int64_t last_ns() noexcept override {
     if (!last_ns_) {
       counted_items all(fd_, file_begin_, name_, static_cast<std::uint32_t>(rate_hz_), 0, never_ns,
-                        is_cancelled_, {model_});
+                        is_cancelled_, *model_, by_);
       for (auto piece = all.find_piece(); piece && !piece->empty();) piece = all.find_piece();
       last_ns_ = all.now_ns_;
     }
     return *last_ns_;
   }
   [[nodiscard]] const g4lidar::model& model() const noexcept override { return *model_; }
-  [[nodiscard]] bool is_usual_model() const noexcept override { return is_usual_; }
+  [[nodiscard]] known_by recognised_by() const noexcept override { return by_; }
 
  private:
   /// Up to the end of the next packet, whose samples have been measured by then: no part of it arrives
@@ -248,7 +247,7 @@ class counted_items final : public item_source {
   std::optional<std::int64_t> last_ns_;
   std::int64_t samples_ = 0;
   const g4lidar::model* model_;
-  bool is_usual_;
+  known_by by_;
   stream_parser parser_{model_->samples};
   std::vector<std::uint8_t> buffer_ = std::vector<std::uint8_t>(65'536);
   off_t read_ = 0;          // of the file
@@ -260,6 +259,11 @@ class counted_items final : public item_source {
 owned_fd open_bytes(const std::string& name) noexcept {
   constexpr int flags = O_RDONLY | O_NOCTTY | O_NONBLOCK | O_CLOEXEC;  // a pipe without a writer
   return owned_fd(name == "-" ? ::fcntl(0, F_DUPFD_CLOEXEC, 3) : ::open(name.c_str(), flags));
+}
+
+known_by basis_of(const recognised_model& found) noexcept {
+  if (found.is_usual()) return known_by::samples;
+  return found.basis == recognised_by::number ? known_by::number : known_by::nothing;
 }
 
 /// Of the regular file from `at` on.
@@ -311,20 +315,21 @@ result<std::unique_ptr<connector>> open_raw_bytes(const std::string& name,
   std::string title = name == "-" ? "standard input" : name;
   if (!is_known || !S_ISREG(file.st_mode)) {
     auto port = std::make_unique<pipe_transport>(std::move(fd), std::move(title));
-    if (which != nullptr) return std::make_unique<pipe_connector>(std::move(port), *which, false);
+    if (which != nullptr)
+      return std::make_unique<pipe_connector>(std::move(port), *which, known_by::user);
     const auto found = port->recognise(is_cancelled);
     if (!found) return tl::unexpected(found.error());
-    return std::make_unique<pipe_connector>(std::move(port), *found->which, found->is_usual());
+    return std::make_unique<pipe_connector>(std::move(port), *found->which, basis_of(*found));
   }
   const off_t at = std::max<off_t>(::lseek(fd.get(), 0, SEEK_CUR), 0);
   const recognised_model found = which == nullptr ? recognised_at(fd, at) : recognised_model{which};
   const model& sent_by = *found.which;
   auto waits = std::make_shared<waker>(real_system_calls());
-  auto items =
-      std::make_unique<counted_items>(std::make_shared<const owned_fd>(std::move(fd)), at, title,
-                                      sample_rate_hz.value_or(first_rate_hz(sent_by)),
-                                      file.st_mtim.tv_sec * second_ns + file.st_mtim.tv_nsec,
-                                      options.to_ns, std::move(is_cancelled), found);
+  auto items = std::make_unique<counted_items>(
+      std::make_shared<const owned_fd>(std::move(fd)), at, title,
+      sample_rate_hz.value_or(first_rate_hz(sent_by)),
+      file.st_mtim.tv_sec * second_ns + file.st_mtim.tv_nsec, options.to_ns,
+      std::move(is_cancelled), sent_by, which != nullptr ? known_by::user : basis_of(found));
   if (auto moved = items->seek(options.from_ns); !moved) return tl::unexpected(moved.error());
   return connect_to(std::make_shared<played_file>(std::move(items), title, options,
                                                   recorded_device{}, std::move(waits)));

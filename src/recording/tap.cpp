@@ -162,7 +162,7 @@ result<std::unique_ptr<connector>> recorded(std::unique_ptr<connector> from,
     return failure(task::opening, problem::bad_option,
                    "the file of the recording is also its source");
   }
-  if (const model* const stated = from->traits().model) {
+  if (const model* const stated = from->traits().recognised.model) {
     if (auto taken = into.made_->take_model(*stated); !taken) return tl::unexpected(taken.error());
   }
   return std::make_unique<recorded_connector<writer>>(std::move(from), *into.made_);

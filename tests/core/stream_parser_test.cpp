@@ -128,7 +128,7 @@ TEST(StreamParser, EventIsValidUntilTheNextCall) {
           ASSERT_TRUE(std::equal(packet->data().begin(), packet->data().end(),
                                  stream.begin() + static_cast<std::ptrdiff_t>(reported)));
         }
-        reported += test::size_of(*found);
+        reported += size_of(*found);
       }
     }
     EXPECT_EQ(reported, stream.size());
@@ -147,7 +147,7 @@ TEST(StreamParser, FeedPushesTheSameEvents) {
         const auto wanted = pulled.next(left);
         ASSERT_TRUE(wanted);
         EXPECT_EQ(test::kind_of(found), test::kind_of(*wanted));
-        EXPECT_EQ(test::size_of(found), test::size_of(*wanted));
+        EXPECT_EQ(size_of(found), size_of(*wanted));
       });
       EXPECT_FALSE(pulled.next(left));
       EXPECT_EQ(pushed.held(), pulled.held());
@@ -217,11 +217,11 @@ TEST(StreamParser, IncompleteFinish_Continues) {
   EXPECT_FALSE(parser.next(input));
   const auto first = parser.finish();
   ASSERT_TRUE(first);
-  reported += test::size_of(*first);
+  reported += size_of(*first);
   input = zero_packet;
   std::size_t packets = 0;
   while (const auto found = parser.next(input)) {
-    reported += test::size_of(*found);
+    reported += size_of(*found);
     packets += std::holds_alternative<packet_view>(*found) ? 1U : 0U;
   }
   EXPECT_EQ(packets, 1U);

@@ -24,7 +24,7 @@ class wrapping_connector final : public forwarding_connector {
       : forwarding_connector(std::move(from)), wrap_(std::move(wrap)), which_(which) {}
   [[nodiscard]] connector_traits traits() const noexcept override {
     connector_traits known = forwarding_connector::traits();
-    known.model = which_;
+    known.recognised.model = which_;
     return known;
   }
   [[nodiscard]] result<std::unique_ptr<transport>> connect() noexcept override {

@@ -117,8 +117,8 @@ TEST(PipeOfRawBytes, IsRecognisedWhileItIsOpened_AndLosesNothing) {
   made.write(all);
   const auto from = open_raw_bytes(made.path(), {});
   ASSERT_TRUE(from);
-  EXPECT_EQ((*from)->traits().model->word, "t-mini-pro");
-  EXPECT_TRUE((*from)->traits().is_usual_model);
+  EXPECT_EQ((*from)->traits().recognised.model->word, "t-mini-pro");
+  EXPECT_EQ((*from)->traits().recognised.by, known_by::samples);
   const auto port = (*from)->connect();
   ASSERT_TRUE(port);
   const byte_vector later = packets_of("t-mini", 2);
@@ -144,8 +144,8 @@ TEST(PipeOfRawBytes, OfANamedModelIsNotReadAhead) {
   const a_pipe made;  // silent
   const auto from = open_raw_bytes(made.path(), {}, {}, {}, model_named("x4"));
   ASSERT_TRUE(from);
-  EXPECT_EQ((*from)->traits().model->word, "x4");
-  EXPECT_FALSE((*from)->traits().is_usual_model);
+  EXPECT_EQ((*from)->traits().recognised.model->word, "x4");
+  EXPECT_EQ((*from)->traits().recognised.by, known_by::user);
 }
 
 TEST(PipeOfRawBytes, OpeningASilentOneCanBeCancelled) {

@@ -129,11 +129,12 @@ template <sample_layout Layout>
   return out;
 }
 
-/// The bytes of a packet, response or time packet; none for skipped ones.
+/// The bytes of a packet of any kind or a response; none for skipped ones.
 [[nodiscard]] constexpr bytes data_of(const event& found) {
   if (const auto* packet = std::get_if<packet_view>(&found)) return packet->data();
   if (const auto* reply = std::get_if<response_view>(&found)) return reply->data();
   if (const auto* time = std::get_if<time_packet_view>(&found)) return time->data();
+  if (const auto* empty = std::get_if<empty_packet_view>(&found)) return empty->data();
   return {};
 }
 

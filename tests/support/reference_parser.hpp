@@ -14,7 +14,16 @@
 namespace reference {
 
 /// The kind of a stretch of the input.
-enum class kind { packet, response, time_packet, noise, bad_header, bad_checksum, truncated };
+enum class kind {
+  packet,
+  response,
+  time_packet,
+  empty_packet,
+  noise,
+  bad_header,
+  bad_checksum,
+  truncated
+};
 
 /// A stretch of the input: a packet, a response, a time packet, or neighbouring skipped bytes of one reason.
 struct stretch {
@@ -33,6 +42,8 @@ struct stretch {
       return "response";
     case kind::time_packet:
       return "time_packet";
+    case kind::empty_packet:
+      return "empty_packet";
     case kind::noise:
       return "noise";
     case kind::bad_header:
@@ -84,7 +95,7 @@ struct packet_form {
     return raw % 2 == 1 && raw / 2 < 360 * 64;
   };
   return in[0] == 0xAA && (k < 2 || in[1] == 0x55) &&
-         (k < 4 || (in[3] >= 1 && in[3] <= most_samples)) && angle_ok(4) && angle_ok(6);
+         (k < 4 || in[3] <= most_samples) && angle_ok(4) && angle_ok(6);
 }
 
 /// The checksum in the order of the protocol page: PH, FSA, the samples, CT with LSN, LSA. Of a sample
@@ -136,7 +147,7 @@ struct packet_form {
 /// What begins at one offset of the input, without its context.
 struct start {
   enum { no_start, refused, unfinished, valid } state;
-  kind what;  ///< Of a valid one: packet, response or time packet. Refused: the reason.
+  kind what;  ///< Of a valid one: a packet of any kind or a response. Refused: the reason.
   std::size_t
       size;  ///< Of a valid one; refused: the bytes from the start to the first impossible one.
 };
@@ -153,7 +164,7 @@ struct start {
   if (size > in.left()) return {start::unfinished, kind::truncated, 0};
   if (checksum_of(in, form.sample_bytes) != in[8] + 256 * in[9])
     return {start::refused, kind::bad_checksum, size};
-  return {start::valid, kind::packet, size};
+  return {start::valid, in[3] == 0 ? kind::empty_packet : kind::packet, size};
 }
 
 [[nodiscard]] inline start response_start_at(const window& in) {

@@ -24,6 +24,7 @@ using buffer = std::vector<std::uint8_t>;
   if (std::holds_alternative<packet_view>(found)) return reference::kind::packet;
   if (std::holds_alternative<response_view>(found)) return reference::kind::response;
   if (std::holds_alternative<time_packet_view>(found)) return reference::kind::time_packet;
+  if (std::holds_alternative<empty_packet_view>(found)) return reference::kind::empty_packet;
   switch (std::get<skipped>(found).reason) {
     case skip_reason::noise:
       return reference::kind::noise;
@@ -35,13 +36,6 @@ using buffer = std::vector<std::uint8_t>;
       break;
   }
   return reference::kind::truncated;
-}
-
-[[nodiscard]] inline std::size_t size_of(const event& found) {
-  if (const auto* packet = std::get_if<packet_view>(&found)) return packet->data().size();
-  if (const auto* reply = std::get_if<response_view>(&found)) return reply->data().size();
-  if (const auto* time = std::get_if<time_packet_view>(&found)) return time->data().size();
-  return std::get<skipped>(found).count;
 }
 
 /// Observes a parser: collects its events and records the first promise that it breaks.

@@ -120,6 +120,7 @@ template <class Cut, class Emit>
     }
     if (const auto* reply = std::get_if<response_view>(&found)) show(text_of(*reply));
     if (const auto* time = std::get_if<time_packet_view>(&found)) show(text_of(*time));
+    if (std::holds_alternative<empty_packet_view>(found)) show(line() << "empty packet");
     sound = sound && reported + data.size() <= input.size() &&
             std::equal(data.begin(), data.end(), input.subspan(reported).begin());
     reported += data.size();

@@ -156,6 +156,11 @@ class layout_recogniser {
     return found == nullptr ? 0 : static_cast<std::size_t>(found - candidates_.data()) + 2;
   }
 
+  /// Packets with samples of 2, 3 or 4 bytes that another one follows; 0 for any other size.
+  [[nodiscard]] constexpr std::uint32_t votes(std::size_t sample_bytes) const noexcept {
+    const std::size_t at = sample_bytes - 2;
+    return at < candidates_.size() ? candidates_[at].votes() : 0;
+  }
   /// Whether there was a packet, with samples of any size.
   [[nodiscard]] constexpr bool has_packet() const noexcept {
     return candidates_[0].packets() + candidates_[1].packets() + candidates_[2].packets() != 0;

@@ -80,15 +80,15 @@ namespace detail {
   return static_cast<std::uint16_t>(folded & 0xFFFFU);
 }
 
-/// Whether `data` begins with a packet of this format. Each byte is checked against the protocol as
-/// soon as it is available. *Pure.* (protocol: Point packets)
+/// Whether `data` begins with a packet of this format, maybe of one without samples. Each byte is checked
+/// against the protocol as soon as it is available. *Pure.* (protocol: Point packets)
 [[nodiscard]] constexpr wire_check check_packet(bytes data,
                                                 sample_format format = g4_format) noexcept {
   const std::size_t have = data.size();
   const auto refused_at = [](std::size_t at) { return wire_check{wire_state::bad_header, at + 1}; };
   if (have > 0 && data[0] != packet_start[0]) return refused_at(0);
   if (have > 1 && data[1] != packet_start[1]) return refused_at(1);
-  if (have > 3 && (data[3] < 1 || data[3] > format.max_samples)) return refused_at(3);
+  if (have > 3 && data[3] > format.max_samples) return refused_at(3);
   for (std::size_t low = 4; low <= 6; low += 2) {  // FSA, then LSA
     if (have > low && (data[low] & 1U) == 0) return refused_at(low);
     if (have > low + 1 && load_u16(data, low) >> 1 >= turn_64ths) return refused_at(low + 1);
@@ -100,7 +100,7 @@ namespace detail {
   return {agrees ? wire_state::valid : wire_state::bad_checksum, size};
 }
 
-/// A view of a valid packet. A `packet_view` can only be created from bytes that passed
+/// A view of a valid packet with samples. A `packet_view` can only be created from bytes that passed
 /// check_packet(); it is valid as long as these bytes do not change.
 class packet_view {
  public:
@@ -110,7 +110,7 @@ class packet_view {
       bytes packet, sample_format format = g4_format) noexcept {
     const wire_check check = check_packet(packet, format);
     if (check.state != wire_state::valid || check.size != packet.size() ||
-        check.size > max_packet_size) {
+        check.size > max_packet_size || packet[3] == 0) {
       return std::nullopt;
     }
     return packet_view(packet, format.layout);
@@ -189,6 +189,21 @@ class packet_view {
   const std::uint8_t* data_;
   std::uint16_t size_;
   sample_layout layout_;
+};
+
+/// A view of a valid packet without samples (LSN 0): some X2 send them between the others. Valid as long as its bytes
+/// do not change.
+class empty_packet_view {
+ public:
+  /// All bytes of the packet.
+  [[nodiscard]] constexpr bytes data() const noexcept { return packet_; }
+
+ private:
+  friend class stream_parser;  // creates views of packets that it has checked
+
+  explicit constexpr empty_packet_view(bytes packet) noexcept : packet_(packet) {}
+
+  bytes packet_;
 };
 
 }  // namespace g4lidar

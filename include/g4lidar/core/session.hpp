@@ -173,6 +173,9 @@ class session {
     request_ = request;
   }
 
+  /// The device is like `which`, valid as long as the session, and goes on with what it does.
+  constexpr void become(const model& which) noexcept { which_ = &which; }
+
  private:
   friend struct session_test_access;
   enum class resume : std::uint8_t { no, later, now };

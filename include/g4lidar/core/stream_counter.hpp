@@ -39,6 +39,11 @@ struct stream_counter : stream_counts {
     parsed_bytes += packet.data().size();
     ++time_packets;
   }
+  /// a valid packet without samples,
+  constexpr void add(empty_packet_view packet) noexcept {
+    parsed_bytes += packet.data().size();
+    ++empty_packets;
+  }
   /// skipped bytes,
   constexpr void add(g4lidar::skipped gone) noexcept {
     crc.add(gone);
@@ -53,6 +58,7 @@ struct stream_counter : stream_counts {
     points += other.points;
     suspect += other.suspect;
     time_packets += other.time_packets;
+    empty_packets += other.empty_packets;
     crc_matches += other.crc_matches;
     crc_mismatches += other.crc_mismatches;
     for (std::size_t i = 0; i < skip_reasons; ++i) {
@@ -69,7 +75,8 @@ struct stream_counter : stream_counts {
     if (const auto* packet = std::get_if<packet_view>(&found)) return add(*packet);
     if (const auto* response = std::get_if<response_view>(&found)) return add(*response);
     if (const auto* gone = std::get_if<g4lidar::skipped>(&found)) return add(*gone);
-    if (const auto* packet = std::get_if<time_packet_view>(&found)) add(*packet);
+    if (const auto* packet = std::get_if<time_packet_view>(&found)) return add(*packet);
+    if (const auto* packet = std::get_if<empty_packet_view>(&found)) add(*packet);
   }
 
   /// Of the stream; a new one begins with the scan header, and where the caller replaces it.

@@ -13,12 +13,14 @@ namespace g4lidar {
 /// Counts over a stream. At every moment the bytes given to the parser are
 /// parsed_bytes + skipped_bytes() + the parser's held(). A stream_counter counts them.
 struct stream_counts {
-  std::uint64_t parsed_bytes = 0;  ///< Of packets, responses and time packets.
+  std::uint64_t parsed_bytes = 0;  ///< Of all packets and responses.
   std::uint64_t packets = 0;       ///< Valid packets, including suspect ones.
   std::uint64_t responses = 0;     ///< Valid responses.
   std::uint64_t points = 0;        ///< Samples of packets that are not suspect.
   std::uint64_t suspect = 0;       ///< Packets whose samples have no known angles.
   std::uint64_t time_packets = 0;  ///< Valid time packets.
+  std::uint64_t empty_packets =
+      0;  ///< Valid packets without samples, which `packets` does not count.
   std::uint64_t crc_matches =
       0;  ///< Revolutions that are complete by the CRC of a device; see ct_check.
   std::uint64_t crc_mismatches = 0;  ///< Revolutions that lost a packet, by that CRC.

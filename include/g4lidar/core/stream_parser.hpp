@@ -25,16 +25,34 @@ namespace g4lidar {
 
 /// What the parser finds. The views are valid until the next call of the parser, and as long as the
 /// input.
-using event = std::variant<packet_view, response_view, skipped, time_packet_view>;
+using event =
+    std::variant<packet_view, response_view, skipped, time_packet_view, empty_packet_view>;
+
+/// How many bytes of the stream an event is. *Pure.*
+[[nodiscard]] constexpr std::size_t size_of(const event& found) noexcept {
+  if (const auto* packet = std::get_if<packet_view>(&found)) return packet->data().size();
+  if (const auto* response = std::get_if<response_view>(&found)) return response->data().size();
+  if (const auto* gone = std::get_if<skipped>(&found)) return gone->count;
+  if (const auto* time = std::get_if<time_packet_view>(&found)) return time->data().size();
+  const auto* empty = std::get_if<empty_packet_view>(&found);
+  return empty == nullptr ? 0 : empty->data().size();
+}
 
 /// What `data` begins with.
-enum class front_kind : std::uint8_t { packet, response, incomplete, skip, time_packet };
+enum class front_kind : std::uint8_t {
+  packet,
+  response,
+  incomplete,
+  skip,
+  time_packet,
+  empty_packet
+};
 
 /// The result of what_stands_at_front().
 struct front {
   front_kind kind;
   skip_reason reason;  ///< For a skip; else noise.
-  /// packet, response, time packet: its size. incomplete: the number of bytes needed to decide.
+  /// packet, response, time packet, empty packet: its size. incomplete: the number of bytes needed to decide.
   /// skip: how many bytes to skip; `claimed` has the size by the refused header.
   std::size_t size;
   std::size_t claimed;
@@ -66,7 +84,8 @@ namespace detail {
 /// The kind of a valid front. *Pure.*
 [[nodiscard]] constexpr front_kind kind_of_front(bytes data) noexcept {
   if (data[0] == response_start[0]) return front_kind::response;
-  return data[1] == packet_start[1] ? front_kind::packet : front_kind::time_packet;
+  if (data[1] != packet_start[1]) return front_kind::time_packet;
+  return data[3] != 0 ? front_kind::packet : front_kind::empty_packet;
 }
 
 }  // namespace detail
@@ -248,6 +267,8 @@ class stream_parser {
       return made(std::in_place, packet_view(whole, format_.layout));
     if (found.kind == front_kind::response) return made(std::in_place, response_view(whole));
     if (found.kind == front_kind::time_packet) return made(std::in_place, time_packet_view(whole));
+    if (found.kind == front_kind::empty_packet)
+      return made(std::in_place, empty_packet_view(whole));
     return made(std::in_place, skipped{taken, claim_.reason, data[taken - 1]});
   }
 

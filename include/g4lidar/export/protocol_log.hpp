@@ -75,6 +75,7 @@ class G4LIDAR_API protocol_log {
   void take(packet_view packet);
   void take(response_view response);
   void take(time_packet_view packet);
+  void take(empty_packet_view packet);
   void take(skipped gone);
   [[nodiscard]] std::string meaning_of(response_view response) const;
   void write_line(char mark, std::string_view words, bytes data, std::int64_t time_ns,

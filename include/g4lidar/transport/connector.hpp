@@ -9,6 +9,7 @@
 
 #include "g4lidar/detail/api.hpp"
 #include "g4lidar/error.hpp"
+#include "g4lidar/recognition.hpp"
 #include "g4lidar/transport/transport.hpp"
 
 namespace g4lidar {
@@ -24,17 +25,11 @@ struct connector_traits {
   /// Wall clock minus now_ns() of the connector, if it is better known than by the system: the bytes
   /// of a file arrived when they were recorded.
   std::optional<std::int64_t> wall_ahead_ns{};
-  /// What sent the bytes of a file. Valid forever; null: not known, as of a device.
-  const g4lidar::model* model = nullptr;
-  /// Whether this model was only recognised, and other models send such bytes, too.
-  bool is_usual_model = false;
-  /// Whether the model was searched at the device; `model` is null if its port could not be opened.
+  /// What is known about the model. As long as nothing is, `model` is null and `by` nothing. Its candidates are valid as
+  /// long as the connector.
+  g4lidar::recognition recognised{};
+  /// Whether the model was searched at the device, or will be: its port could not be opened yet.
   bool is_searched = false;
-  /// The models between which the bytes of such a device do not decide, `model` first. Valid as long as the
-  /// connector; empty if none was found.
-  std::span<const g4lidar::model* const> candidates{};
-  /// Whether a search has found the device scanning, and has stopped it.
-  bool was_stopped = false;
 };
 
 /// Opens the transport to a device, the first time and after each loss. *Single thread* except

@@ -17,6 +17,13 @@ void transmitter::send_packet(std::int64_t now_ns) noexcept {
   if (const auto clock = samples.take_time_packet(now_ns, options_.time_packet_ns)) {
     line.send(*clock, now_ns);
   }
+  if (options_.empty_packets && packet->zero) {
+    const bytes zero = bytes(packet->data).subspan(packet->begin);
+    // With two equal angles the checksum is that of the start alone.
+    line.send(std::array<std::uint8_t, 10>{0xAA, 0x55, 0x00, 0x00, zero[4], zero[5], zero[4],
+                                           zero[5], 0xAA, 0x55},
+              now_ns);
+  }
   if (faults_.strike(fault_kind::omit) != nullptr) return;
   if (faults_.strike(fault_kind::truncate) != nullptr) {
     const auto most = static_cast<std::uint64_t>(packet->size - packet->begin - 1);

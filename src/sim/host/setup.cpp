@@ -33,7 +33,7 @@ using member =
                  disturbance options::*, drive options::*, dtr_start options::*, dtr_cut options::*,
                  low_power stored::*, motor_direction stored::*, constant_frequency stored::*,
                  power_down_protection stored::*, health_status health::*>;
-constexpr std::array<std::pair<std::string_view, member>, 55> members{{
+constexpr std::array<std::pair<std::string_view, member>, 56> members{{
     {"baud", &options::baud},
     {"batch_min_ns", &options::batch_min_ns},
     {"batch_max_ns", &options::batch_max_ns},
@@ -60,6 +60,7 @@ constexpr std::array<std::pair<std::string_view, member>, 55> members{{
     {"dtr_low_ns", &options::dtr_low_ns},
     {"motor_has_power", &options::motor_has_power},
     {"time_packet_ns", &options::time_packet_ns},
+    {"empty_packets", &options::empty_packets},
     {"stop_truncates", &options::stop_truncates},
     {"boot_text", &options::boot_text},
     {"boot_information", &options::boot_information},

@@ -119,14 +119,14 @@ INSTANTIATE_TEST_SUITE_P(All, LiveModel, ::testing::ValuesIn(models), name_in_te
 // ---- identity -----------------------------------------------------------------------------------
 
 TEST(LiveIdentity, AnotherModelThanTheNamedOne_IsAnErrorThatNamesBoth) {
-  sim::device_options options = options_of(*model_named("x4"));
-  options.info.model = 9;  // an R2
-  bench on(*model_named("x4"), options);
+  sim::device_options options = options_of(g4_model);
+  options.info.model = 9;  // an R2, with the same rate and samples
+  bench on(g4_model, options);
   const auto lidar = on.open();
   ASSERT_FALSE(lidar);
   EXPECT_EQ(lidar.error().code(), problem::other_device);
   EXPECT_NE(lidar.error().message().find("R2"), std::string::npos) << lidar.error().message();
-  EXPECT_NE(lidar.error().message().find("not X4"), std::string::npos) << lidar.error().message();
+  EXPECT_NE(lidar.error().message().find("not G4"), std::string::npos) << lidar.error().message();
 }
 
 TEST(LiveIdentity, OfAOneWayLidar_ComesFromCt) {

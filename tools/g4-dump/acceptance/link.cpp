@@ -22,13 +22,6 @@ constexpr std::int64_t cut_off_ns = 60 * ms;
 constexpr std::int64_t quiet_ns = 150 * ms;
 constexpr std::int64_t spin_up_ns = 12'000 * ms;
 
-std::size_t size_of(const event& found) {
-  if (const auto* packet = std::get_if<packet_view>(&found)) return packet->data().size();
-  if (const auto* response = std::get_if<response_view>(&found)) return response->data().size();
-  if (const auto* packet = std::get_if<time_packet_view>(&found)) return packet->data().size();
-  return std::get<skipped>(found).count;
-}
-
 /// A revolution: when its zero packet came, and the samples until the next one.
 struct revolution {
   std::int64_t begin_ns;

@@ -112,7 +112,7 @@ void report_events(g4lidar::lidar& lidar) {
       continue;
     }
     if (event->what == lidar_event::kind::other_number) {
-      report_other_number(which, lidar.information().model);
+      report_contradictions(lidar.recognition());
       continue;
     }
     logger::info(fmt::format("{}: {}{}{}\n", lidar.name(), name_of(event->what),

@@ -197,7 +197,7 @@ void copy_bytes(const convert_options& options, output& out) {
   const g4lidar::model* const named = model_of(*options.points.common);
   const auto from = value_of(open_raw_bytes(
       path_of_source(options.in()), options.points.source.raw_sample_rate_hz, {}, {}, named));
-  const g4lidar::model* const which = named != nullptr ? named : from->traits().model;
+  const g4lidar::model* const which = named != nullptr ? named : from->traits().recognised.model;
   raw_copy copy(which != nullptr ? *which : g4_model);
   const std::int64_t begin_ns = from->now_ns();
   const auto opened = value_of(from->connect());

@@ -159,7 +159,7 @@ void list_lidar(const packets_options& options) {
   try {
     lidar_options how;
     how.wrap = [&](std::unique_ptr<connector> from) {
-      const g4lidar::model* const which = from->traits().model;
+      const g4lidar::model* const which = from->traits().recognised.model;
       begin(which != nullptr ? *which : g4_model);
       return for_each_connection([&](auto port) {
         return std::make_unique<logged_transport>(std::move(port), *log);

@@ -176,6 +176,7 @@ time since the previous line.
   suspect             packets whose angles contradict each other: they give no points
   skipped             bytes that belong to no packet: noise, bad_header, bad_checksum, truncated
   time_packets        packets with the clock of the device; a G4 sends none
+  empty_packets       packets without samples, as some X2 send them
   crc_matches         revolutions that are complete by the CRC byte of devices that send one
   crc_mismatches      revolutions that lost a packet, by that byte; CRC_BAD in a line
   samples_lost        samples that were measured but not received, by the angles

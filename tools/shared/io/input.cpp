@@ -199,11 +199,12 @@ std::string stats_in_words(const stream_counts& counts, std::uint64_t bytes) {
                       counts.crc_mismatches);
   }
   return fmt::format(
-      "{}: {} ({} suspect) with {}, {}{}\n"
+      "{}: {} ({} suspect) with {}, {}{}{}\n"
       "{} skipped: {} noise, {} bad header, {} bad checksum, {} truncated\n{}",
       counted(bytes, "byte"), counted(counts.packets, "packet"), counts.suspect,
       counted(counts.points, "point"), counted(counts.responses, "response"),
       counts.time_packets > 0 ? ", " + counted(counts.time_packets, "time packet") : "",
+      counts.empty_packets > 0 ? ", " + counted(counts.empty_packets, "empty packet") : "",
       counted(counts.skipped_bytes(), "byte"), counts.skipped(skip_reason::noise),
       counts.skipped(skip_reason::bad_header), counts.skipped(skip_reason::bad_checksum),
       counts.skipped(skip_reason::truncated), crc);
@@ -220,6 +221,7 @@ nlohmann::ordered_json counts_as_json(const stream_counts& counts, std::uint64_t
           {"points", counts.points},
           {"suspect", counts.suspect},
           {"time_packets", counts.time_packets},
+          {"empty_packets", counts.empty_packets},
           {"crc_matches", counts.crc_matches},
           {"crc_mismatches", counts.crc_mismatches},
           {"skipped", skipped}};

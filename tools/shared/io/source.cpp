@@ -182,11 +182,11 @@ void report_missing_zero(const g4lidar::model& which) {
                   which.name));
 }
 
-void report_other_number(const g4lidar::model& which, unsigned number) {
-  logger::info(fmt::format(
-      "the lidar states the number {}, and {} {} has {}{}: --model names another model\n", number,
-      article_of(which), which.name, which.ids[0],
-      which.ids[1] != 0 ? fmt::format(" or {}", which.ids[1]) : ""));
+void report_contradictions(const recognition& found) {
+  static std::string last;
+  const std::string now = contradictions_of(found);
+  if (!now.empty() && now != last) logger::info(now + "\n");
+  last = now;
 }
 
 void report_model(const recognised_model& found) { report_model(*found.which, found.is_usual()); }
@@ -231,8 +231,9 @@ lidar_options options_for(const common_options& options, lidar_options how) {
   const bool is_raw = kind_of_source(options.source) == source_kind::raw_bytes;
   how.wrap = [inner = std::move(how.wrap), is_raw](std::unique_ptr<connector> from) {
     const connector_traits behind = from->traits();
-    report_candidates(behind.candidates);
-    if (is_raw && behind.model != nullptr) report_model(*behind.model, behind.is_usual_model);
+    const recognition& found = behind.recognised;
+    report_candidates(found.candidates);
+    if (is_raw && found.model != nullptr) report_model(*found.model, found.by == known_by::samples);
     return inner ? inner(std::move(from)) : result<std::unique_ptr<connector>>(std::move(from));
   };
   return how;
@@ -273,6 +274,7 @@ opened_source::opened_source(const common_options& options, lidar_options how) {
     throw failure_of(options, opened.error());
   }
   lidar_.emplace(std::move(*opened));
+  report_contradictions(lidar_->recognition());
   logger::verbose(fmt::format("opened {}\n", lidar_->name()));
 }
 

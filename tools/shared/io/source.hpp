@@ -42,8 +42,8 @@ void report_model(const g4lidar::model& found, bool is_usual);
 void report_model(const recognised_model& found);
 /// Logs that the angles lack the offset of zero of this model.
 void report_missing_zero(const g4lidar::model& which);
-/// Logs that the lidar states this number, which its model does not have.
-void report_other_number(const g4lidar::model& which, unsigned number);
+/// Logs what contradicts the model, if anything does, and once.
+void report_contradictions(const g4lidar::recognition& found);
 /// Logs between which models the bytes of a device do not decide, if there are several.
 void report_candidates(std::span<const g4lidar::model* const> candidates);
 /// The error of a lidar that was opened so, in the words of the tool.

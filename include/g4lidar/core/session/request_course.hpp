@@ -65,8 +65,10 @@ class request_course {
     heard_from_device& heard = outcome_.heard;
     if (const auto* noise = std::get_if<skipped>(&found)) {
       heard.skipped_bytes += static_cast<std::uint32_t>(noise->count);
-    } else if (std::get_if<time_packet_view>(&found) == nullptr) {
-      ++(std::get_if<packet_view>(&found) != nullptr ? heard.packets : heard.responses);
+    } else if (std::holds_alternative<packet_view>(found)) {
+      ++heard.packets;
+    } else if (std::holds_alternative<response_view>(found)) {
+      ++heard.responses;
     }
   }
   /// An answer was impossible.

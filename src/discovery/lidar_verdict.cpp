@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: MIT
+// The search for the lidar: which one it is, when something was heard.
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include "inquiry.hpp"
+#include "lidar_search.hpp"
+
+namespace g4lidar {
+namespace {
+
+/// A lidar that announces itself sends packets right after it.
+constexpr std::int64_t announcement_ns = 40'000'000;
+constexpr std::int64_t stops_ns = 2'000'000'000;
+/// In a row, to contradict the number of the device.
+constexpr std::uint32_t certain_packets = 5;
+constexpr std::int64_t certain_ns = 100'000'000;
+
+error refused(const transport& port, std::string_view product) {
+  return {task::asking, problem::other_device,
+          std::string(port.name()).append(", a ").append(product), 0,
+          error_detail::unsupported_product};
+}
+
+}  // namespace
+
+lidar_signs lidar_search::signs() const noexcept {
+  lidar_signs all;
+  all.baud = port_.baud();
+  all.is_baud_certain = !has_fixed_rate_ || (options_.baud != 0 && heard_.device);
+  all.sample_bytes = heard_.stream.sample_bytes();
+  all.sample_rate_hz = heard_.stream.rate_hz();
+  if (heard_.device) all.id = heard_.device->model;
+  if (const auto stated = heard_.stream.information()) all.ct_id_low_bits = stated->id_low_bits;
+  return all;
+}
+
+recognised_lidar lidar_search::made(std::vector<const model*> candidates,
+                                    const lidar_signs& of) const {
+  recognised_lidar lidar;
+  lidar.model = options_.model != nullptr ? options_.model : candidates.front();
+  lidar.baud = port_.baud();
+  lidar.was_scanning = of.sample_bytes != 0;
+  const bool is_numbered = of.id != 0 || of.ct_id_low_bits != 0;
+  lidar.by = options_.model != nullptr ? known_by::user
+             : is_numbered             ? known_by::number
+                                       : known_by::samples;
+  lidar.is_silent = of.answers == presence::no && lidar.model->link == link_kind::two_way;
+  if (heard_.device) {
+    lidar.device = *heard_.device;
+  } else if (const auto stated = heard_.stream.information()) {
+    lidar.device = information_of(*stated, *lidar.model);
+  }
+  lidar.candidates = std::move(candidates);
+  return lidar;
+}
+
+/// Packets arrive: at least three more of one size of samples than of the others.
+lidar_search::found lidar_search::judge_stream() {
+  if (only_listens()) return judge_named();
+  // Few more packets may have to contradict what the device answers.
+  const auto is_counted = [this] {
+    return heard_.stream.votes(heard_.stream.sample_bytes()) >= certain_packets;
+  };
+  if (auto done = listen(in_ns(certain_ns), is_counted); !done) return tl::unexpected(done.error());
+  const std::int64_t informed_ns = in_ns(information_ns);
+  const auto is_one_way = [](const model* row) { return row->link == link_kind::one_way; };
+  const bool is_doubtful = std::ranges::any_of(models_that_fit(signs()), is_one_way);
+  // A one-way lidar is not to be disturbed: its CT bytes or its sample rate may be sufficient.
+  if (is_doubtful) {
+    const auto is_certain = [this] { return !may_be_two_way(signs()); };
+    if (auto done = listen(informed_ns, is_certain); !done) return tl::unexpected(done.error());
+  }
+  lidar_signs known = signs();
+  if (may_be_two_way(known)) {
+    const auto fitting = models_that_fit(known);
+    const auto like = std::ranges::find_if_not(fitting, is_one_way);
+    const std::optional<device_information> announced = std::exchange(heard_.device, std::nullopt);
+    auto device = stop_and_ask(**like, is_doubtful ? stop_attempts::one : stop_attempts::several);
+    if (!device) return tl::unexpected(device.error());
+    if (*device) {
+      // NOLINTNEXTLINE(bugprone-unchecked-optional-access): checked before
+      heard_.device = **device;
+      known.answers = presence::yes;
+      known.id = heard_.device->model;
+      return judge_number(known);
+    }
+    heard_.device = announced;
+  }
+  return judge_silent(known, is_doubtful ? informed_ns : in_ns(information_ns));
+}
+
+/// Nothing is sent. Packets of a named model must have its samples; whether an unnamed one answers is not known.
+lidar_search::found lidar_search::judge_named() {
+  lidar_signs known = signs();
+  known.answers = presence::no;
+  if (options_.model == nullptr) {
+    auto all = models_that_fit(signs());
+    if (all.empty()) all = models_that_fit({.sample_bytes = known.sample_bytes});
+    return made(std::move(all), known);
+  }
+  const std::size_t own = sample_size(options_.model->samples.layout);
+  if (known.sample_bytes == own) return made({options_.model}, known);
+  return failure(task::asking, problem::other_device,
+                 std::string(port_.name())
+                     .append(", packets with samples of ")
+                     .append(std::to_string(known.sample_bytes))
+                     .append(" bytes at ")
+                     .append(std::to_string(port_.baud()))
+                     .append(" baud, not of ")
+                     .append(std::to_string(own)),
+                 0, error_detail::other_samples);
+}
+
+/// It does not answer. Its CT bytes may identify it. Else it is read as a two-way lidar with this rate whose answers do
+/// not arrive, or as a one-way lidar at a rate that is not usual for it.
+lidar_search::found lidar_search::judge_silent(lidar_signs known, std::int64_t until_ns) {
+  known.answers = presence::no;
+  if (!models_that_fit(known).empty()) {
+    const auto is_informed = [this] { return heard_.stream.information().has_value(); };
+    if (auto done = listen(until_ns, is_informed); !done) return tl::unexpected(done.error());
+    known = signs();
+    known.answers = presence::no;
+    auto silent = models_that_fit(known);
+    if (!silent.empty()) return made(std::move(silent), known);
+  }
+  lidar_signs any = known;
+  any.answers = presence::yes;  // if it were heard
+  any.id = any.ct_id_low_bits = 0;
+  auto all = models_that_fit(any);
+  // A device that boots, or is busy, may stop later.
+  const bool has_time = port_.now_ns() + one_stop_ns + information_ns < deadline_ns_;
+  if (!all.empty() && has_time) return failure(task::asking, problem::does_not_stop, port_.name());
+  if (all.empty())
+    all = models_that_fit({.sample_bytes = known.sample_bytes, .answers = presence::no});
+  return made(std::move(all), known);
+}
+
+/// A device that has answered with its number. Certain packets are right where they contradict it; and a number that no
+/// model has decides nothing.
+lidar_search::found lidar_search::judge_number(lidar_signs known) {
+  const std::string_view product = other_product(known.id);
+  if (!product.empty() && options_.model == nullptr && known.sample_bytes == 0)
+    return tl::unexpected(refused(port_, product));
+  auto fitting = models_that_fit(known);
+  if (!fitting.empty()) return made(std::move(fitting), known);
+  const bool is_certain = heard_.stream.votes(known.sample_bytes) >= certain_packets;
+  if (known.sample_bytes != 0 && !is_certain) {
+    lidar_signs without = known;
+    without.sample_bytes = 0;
+    fitting = models_that_fit(without);
+    if (!fitting.empty()) return made(std::move(fitting), known);
+  }
+  known.id = 0;
+  fitting = models_that_fit(known);
+  if (fitting.empty())
+    fitting = models_that_fit({.sample_bytes = known.sample_bytes, .answers = presence::yes});
+  return made(std::move(fitting), known);
+}
+
+/// A device information has arrived after the question. A one-way lidar sends one after power-on, and
+/// packets right after it.
+lidar_search::found lidar_search::judge_reply() {
+  lidar_signs known = signs();
+  known.answers = presence::no;
+  if (!models_that_fit(known).empty()) {
+    const auto is_stream = [this] { return heard_.stream.sample_bytes() != 0; };
+    if (auto done = listen(in_ns(announcement_ns), is_stream); !done) {
+      return tl::unexpected(done.error());
+    }
+    if (is_stream()) return judge_stream();
+  }
+  known.answers = presence::yes;
+  if (models_that_fit(known).empty()) {
+    known.answers = presence::unknown;
+    if (models_that_fit(known).empty()) known.answers = presence::yes;
+  }
+  return judge_number(known);
+}
+
+/// What the device answers after a stop; nothing if it does not.
+result<std::optional<device_information>> lidar_search::stop_and_ask(const model& like,
+                                                                     stop_attempts how) {
+  // If it does not stop, the rest of the time shows what else it may be.
+  const std::int64_t one_ns = in_ns(one_stop_ns);
+  const std::int64_t several_ns = std::min(in_ns(stops_ns), deadline_ns_ - information_ns);
+  auto answered = inquiry(port_, like.samples, how)
+                      .ask(how == stop_attempts::one ? one_ns : std::max(one_ns, several_ns));
+  if (answered) return *answered;
+  const problem why = answered.error().code();
+  if (why == problem::silence || why == problem::garbage || why == problem::does_not_stop) {
+    return std::nullopt;
+  }
+  return tl::unexpected(answered.error());
+}
+
+}  // namespace g4lidar

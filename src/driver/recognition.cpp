@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: MIT
+#include "g4lidar/recognition.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "core/number_text.hpp"
+#include "discovery/model_choice.hpp"
+
+namespace g4lidar {
+namespace {
+
+constexpr std::string_view please =
+    " Please report it, with the file that g4-dump doctor --report writes.";
+
+std::string number_text(std::uint8_t number, const model& read_as) {
+  std::string text = "The lidar reports the number " + std::to_string(number);
+  const auto with_number = [number](const model& row) {
+    return std::ranges::find(row.ids, number) != row.ids.end();
+  };
+  const auto* const owner = std::ranges::find_if(models, with_number);
+  if (owner == models.end()) {
+    text += ", which no known model has.";
+  } else {
+    text.append(", that of ").append(article_of(*owner)).append(" ").append(owner->name);
+    text += ".";
+  }
+  text.append(" It is read as ").append(article_of(read_as)).append(" ").append(read_as.name);
+  text += ": compare the label of the lidar.";
+  return owner == models.end() ? text.append(please) : text;
+}
+
+}  // namespace
+
+std::string_view name_of(known_by what) noexcept {
+  constexpr std::array<std::string_view, 5> names{"nothing", "user", "recording", "number",
+                                                  "samples"};
+  const auto at = static_cast<std::size_t>(what);
+  return at < names.size() ? names[at] : names[0];
+}
+
+std::string contradictions_of(const recognition& what) {
+  if (what.model == nullptr) return {};
+  std::string all;
+  const auto add = [&all](const std::string& sentence) {
+    if (!all.empty()) all += " ";
+    all += sentence;
+  };
+  if (what.number != 0 && std::ranges::find(what.model->ids, what.number) == what.model->ids.end())
+    add(number_text(what.number, *what.model));
+  const std::string one = std::string(article_of(*what.model)).append(" ").append(what.model->name);
+  if (what.baud != 0 && !has_rate(*what.model, what.baud)) {
+    const auto rates =
+        list_of(rates_of(*what.model), [](auto baud) { return std::to_string(baud); });
+    add("The line runs at " + std::to_string(what.baud) + " baud, " + one + " usually at " + rates +
+        ".");
+  }
+  if (what.is_silent) {
+    add("The lidar sends packets as of " + one + ", and answers no command: it can be read only. " +
+        "Maybe its receiving wire is not connected, or it is a COIN-D4 (LDS-03).");
+  }
+  return all;
+}
+
+}  // namespace g4lidar
