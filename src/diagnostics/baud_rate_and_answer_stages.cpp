@@ -72,7 +72,8 @@ void live_run::run() {
   }
   report_stream();
   report_rate(log_, measured_, device_, *lidar_.which);
-  report_loss(log_, measured_, *lidar_.which);
+  report_loss(log_, measured_, *lidar_.which, &link_.survey(),
+              link_.port().name().starts_with("tcp:"));
   report_returns(log_, measured_, device_, *lidar_.which, log_.options().directions);
   report_latency(log_, measured_, baud, link_.port().name());
 }
@@ -153,7 +154,7 @@ bool live_run::interview() {
     device_ = replies_.snapshot(*lidar_.which);
   }
   if (link_.is_over()) return false;
-  return report_identity(log_, device_.information, *lidar_.which) &&
+  return report_identity(log_, device_.information, *lidar_.which, link_.port().baud()) &&
          report_health(log_, device_.condition);
 }
 

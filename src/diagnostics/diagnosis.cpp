@@ -57,6 +57,13 @@ constexpr std::array rows{
         "Another program uses the port at the same time; each byte reaches only one of them.",
         problem::interference),
     row("bad_baud_rate", fail, "The port does not support the baud rate.", problem::bad_baud_rate),
+    row("changed_bytes", fail,
+        "Something between the lidar and this program has changed the bytes: a network bridge, a "
+        "transfer of text, a terminal.",
+        "Pass the bytes on as they are: set the bridge to raw TCP with the baud rate of the lidar "
+        "and without flow control; transfer files as binary. Over a slow network bytes may be "
+        "lost: use a better connection.",
+        {line_noise, bytes_dropped}),
     row("wrong_baud_rate", fail, "Bytes arrive, but they make no sense at this baud rate.",
         problem::garbage, {other_device, interference, line_noise}),
     row("silent", fail,

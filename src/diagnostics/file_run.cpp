@@ -36,7 +36,7 @@ class file_run {
     if (model_.word != g4_model.word) port_.add("model", std::string(model_.word));
     const bool is_read = is_recording(path) ? read_recording(path) : read_bytes(path);
     splitter_.finish(to_);
-    layout_.finish();
+    survey_.finish();
     if (!is_read || measured_.tally().arrivals.bytes() == 0) {
       port_.find(diagnosis::bad_file);
       log_.report(std::move(port_));
@@ -123,7 +123,7 @@ class file_run {
     measured_.take(reading{data.size(), arrival_ns,
                            follows ? detail::saturating_sub(arrival_ns, arrival_ns_) : 0});
     arrival_ns_ = arrival_ns;
-    layout_.take(data);
+    survey_.received(data);
     splitter_.take(data, arrival_ns, to_);
   }
 
@@ -158,7 +158,12 @@ class file_run {
     baud.add("bytes", measured_.tally().arrivals.bytes());
     baud.add("packets", counts.packets);
     baud.add("responses", counts.responses);
-    if (find_other_layout(baud, layout_, model_)) {
+    const bool has_packets = counts.packets > few_packets;
+    if (!has_packets && find_other_source(baud, survey_)) {
+      log_.report(std::move(baud));
+      return log_.skip_from(diagnostic_stage::answers, "These are not the bytes of a lidar.");
+    }
+    if (find_other_layout(baud, survey_.layout(), model_)) {
       log_.report(std::move(baud));
       return log_.skip_from(diagnostic_stage::answers,
                             "The packets are not those of " + one_of(model_) + ".");
@@ -201,7 +206,7 @@ class file_run {
     judge_stream(stream, measured_, seconds_);
     log_.report(std::move(stream));
     report_rate(log_, measured_, device_, model_);
-    report_loss(log_, measured_, model_);
+    report_loss(log_, measured_, model_, &survey_);
     report_returns(log_, measured_, device_, model_, log_.options().directions);
     log_.skip(diagnostic_stage::usb_latency,
               "The reader of a file or a recording groups bytes itself.");
@@ -211,7 +216,7 @@ class file_run {
   const model& model_;
   stage_report port_{};
   event_splitter splitter_;
-  layout_recogniser layout_;
+  stream_survey survey_;
   observer to_{.event = [this](const observed_event& observed) { take(observed); }};
   stream_statistics measured_{model_};
   device_snapshot device_;

@@ -25,8 +25,8 @@ constexpr std::size_t attempts = 3;
 constexpr std::int64_t silent_ns = 200 * ms;
 constexpr std::int64_t search_ns = 3'000 * ms;
 /// "25 bytes like an answer of another length (A5 5A 15 00 00 00) arrived."
-std::string arrived(const unrecognised_bytes& heard) {
-  const std::string text(heard.text());
+std::string arrived(const stream_survey& heard) {
+  const std::string text(heard.all().text());
   return text.empty() ? text : text.substr(text.find_first_not_of(", ")) + " arrived.";
 }
 
@@ -61,9 +61,11 @@ first_contact::state first_contact::make(stage_report& baud) {
   }
   if (garbage_ > 0 && !link.is_over()) {
     baud.add("bytes_of_no_packet", garbage_);
-    if (!find_other_layout(baud, link.layout(), *lidar.which)) {
+    if (!find_other_source(baud, link.survey()) &&
+        !find_other_layout(baud, link.layout(), *lidar.which)) {
       baud.find(diagnosis::wrong_baud_rate);
-      if (baud.remark.empty()) baud.remark = arrived(link.heard());
+      if (!tried_.empty()) baud.remark = "No packet at any rate that was tried: " + tried_ + ".";
+      if (baud.remark.empty()) baud.remark = arrived(link.survey());
     }
   }
   return state::none;
@@ -191,12 +193,20 @@ bool first_contact::recognise(const exchange& first) {
   }
   const auto who = several.snapshot(*lidar.which).information;
   if (!who) return true;
-  if (lidar.is_named) return is_its(*who);
-  lidar.candidates = models_that_fit({.baud = of_.link.port().baud(),
-                                      .is_baud_certain = lidar.has_baud,
-                                      .sample_bytes = of_.link.layout().sample_bytes(),
-                                      .id = who->model,
-                                      .answers = presence::yes});
+  const std::uint32_t baud = of_.link.port().baud();
+  const bool is_other_product = !other_product(who->model).empty();
+  if (lidar.is_named)
+    return !is_other_product && !is_surely_another(*lidar.which, who->model, baud);
+  lidar_signs known{.baud = baud,
+                    .is_baud_certain = lidar.has_baud,
+                    .sample_bytes = of_.link.layout().sample_bytes(),
+                    .id = who->model,
+                    .answers = presence::yes};
+  lidar.candidates = models_that_fit(known);
+  if (lidar.candidates.empty() && !is_other_product) {  // its samples decide
+    known.id = 0;
+    lidar.candidates = models_that_fit(known);
+  }
   if (!lidar.candidates.empty()) lidar.which = lidar.candidates.front();
   of_.link.read_as(*lidar.which);
   return true;
@@ -212,7 +222,11 @@ first_contact::state first_contact::search(stage_report& baud) {
   const auto found = link.search({.may_pulse_dtr = may_pulse_dtr_}, search_ns);
   if (!found) {
     if (link.port().baud() != before) static_cast<void>(link.set_baud(before));
-    if (found.error().detail() != error_detail::unsupported_product) return state::none;
+    const error_detail why = found.error().detail();
+    if (why != error_detail::unsupported_product && why != error_detail::other_maker) {
+      if (found.error() == problem::garbage) tried_ = found.error().subject();
+      return state::none;
+    }
     baud.find(diagnosis::other_device);
     baud.remark = cause_of(found.error());
     return state::refused;

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "g4lidar/core/model.hpp"
@@ -74,6 +75,7 @@ class first_contact {
   parts of_;
   bool may_pulse_dtr_;
   std::int64_t asked_ns_ = -1;  // the first query without a reply
+  std::string tried_;           // by the search, where something arrived: bytes and rates
   std::uint64_t garbage_ = 0;   // bytes outside packets and responses, before the first query
 };
 

@@ -116,8 +116,7 @@ void link_monitor::take(const received& got, std::int64_t took_ns, const observe
   what.is_backlog = has_backlog_;
   has_backlog_ = has_backlog_ && got.count == buffer_.size();
   if (to.arrival) to.arrival(what);
-  layout_.take(data);
-  heard_.received(data);
+  survey_.received(data);
   splitter_.received(data);
 }
 
@@ -130,7 +129,7 @@ void link_monitor::listen_for_quiet(std::int64_t quiet, std::int64_t until_ns) {
 
 result<void> link_monitor::write(bytes data) {
   if (is_over()) return {};
-  heard_.sent(data);
+  survey_.sent(data);
   const auto sent = transport_->write(data, transport_->now_ns() + 500 * ms);
   if (!sent && sent.error().code() != problem::cancelled) error_ = sent.error();
   return {};
@@ -203,7 +202,7 @@ void link_monitor::read_as(const model& which) {
   which_ = &which;
   boots_before_ += splitter_.boots();
   splitter_ = event_splitter(which.samples);
-  layout_ = {};
+  survey_.part();
   silence_ns_ = 0;
   read_ns_ = -1;
 }

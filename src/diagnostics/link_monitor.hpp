@@ -11,14 +11,13 @@
 #include <vector>
 
 #include "driver/device_link.hpp"
-#include "driver/unrecognised_bytes.hpp"
 #include "g4lidar/core/command.hpp"
-#include "g4lidar/core/layout_recogniser.hpp"
 #include "g4lidar/core/model.hpp"
 #include "g4lidar/core/stream_counter.hpp"
 #include "g4lidar/discovery.hpp"
 #include "g4lidar/error.hpp"
 #include "g4lidar/transport/transport.hpp"
+#include "survey/stream_survey.hpp"
 
 namespace g4lidar {
 
@@ -151,9 +150,9 @@ class link_monitor {
   /// Pauses of the host of any length.
   [[nodiscard]] std::uint64_t host_pauses() const noexcept { return host_pauses_; }
   /// Of the same.
-  [[nodiscard]] const layout_recogniser& layout() const noexcept { return layout_; }
-  /// All that was received and sent, but by search().
-  [[nodiscard]] const unrecognised_bytes& heard() const noexcept { return heard_; }
+  [[nodiscard]] const layout_recogniser& layout() const noexcept { return survey_.layout(); }
+  /// Of all that was received and sent, but by search().
+  [[nodiscard]] const stream_survey& survey() const noexcept { return survey_; }
   /// Where the bytes come from.
   [[nodiscard]] transport& port() const noexcept { return *transport_; }
   /// The bytes that follow are those of a lidar like `which`, valid as long as this, and do not continue
@@ -182,8 +181,7 @@ class link_monitor {
   std::int64_t silence_ns_ = 0;
   std::uint64_t host_pauses_ = 0;
   std::int64_t host_paused_ns_ = 0;
-  layout_recogniser layout_;
-  unrecognised_bytes heard_;
+  stream_survey survey_;
 };
 
 /// Lowers the line DTR for this time, which stops a motor that it drives, and raises it. False if there is none.

@@ -82,7 +82,10 @@ std::string other_number(std::uint8_t id, const model& wanted) {
   }
   text += "; that of " + one_of(wanted) + " is " + std::to_string(wanted.ids[0]);
   if (wanted.ids[1] != 0) text += " or " + std::to_string(wanted.ids[1]);
-  return text + ".";
+  text += ".";
+  if (product.empty() && having.empty())
+    text += " Please report it, with the file of g4-dump doctor --report.";
+  return text;
 }
 
 /// The sample rate that the lidar reports, or else the nearest one of `wanted`, if it has identified
@@ -135,7 +138,7 @@ std::string words_of(std::span<const model* const> all) {
 }
 
 bool report_identity(stage_log& log, const std::optional<device_information>& known,
-                     const model& wanted) {
+                     const model& wanted, std::uint32_t baud) {
   if (!known) {
     log.skip(diagnostic_stage::identity, "There is no device information.");
     return true;
@@ -151,7 +154,9 @@ bool report_identity(stage_log& log, const std::optional<device_information>& kn
   const bool is_wanted = known->model == wanted.ids[0] || known->model == wanted.ids[1];
   // As the driver judges it: a number that several one-way models report contradicts none of them surely.
   const bool is_surely_other =
-      wanted.link == link_kind::two_way || one_way_other_than(wanted, known->model) != nullptr;
+      wanted.link == link_kind::one_way
+          ? one_way_other_than(wanted, known->model) != nullptr
+          : !other_product(known->model).empty() || is_surely_another(wanted, known->model, baud);
   if (!is_wanted) {
     identity.find(is_surely_other ? diagnosis::other_device : diagnosis::other_number);
     identity.remark = other_number(known->model, wanted);
@@ -246,7 +251,8 @@ void report_rate(stage_log& log, const stream_statistics& measured, const device
   log.report(std::move(rate));
 }
 
-void report_loss(stage_log& log, const stream_statistics& measured, const model& wanted) {
+void report_loss(stage_log& log, const stream_statistics& measured, const model& wanted,
+                 const stream_survey* seen, bool is_network) {
   if (measured.tally().arrivals.bytes() == 0)
     return log.skip(diagnostic_stage::loss, "Nothing arrived.");
   stage_report loss{.stage = diagnostic_stage::loss};
@@ -272,7 +278,13 @@ void report_loss(stage_log& log, const stream_statistics& measured, const model&
              static_cast<double>(damage.wrong_bits) / static_cast<double>(damage.one_packet));
   }
   if (measured.was_steady()) {
-    for (const diagnosis what : diagnoses_of(measured)) loss.find(what);
+    const std::string_view of_the_line = describe(diagnosis::line_noise).advice;
+    const bool is_changed = seen != nullptr && seen->change() != stream_change::none;
+    for (const diagnosis what : diagnoses_of(measured)) {
+      const bool is_of_bridge = is_network && describe(what).advice == of_the_line;
+      loss.find(is_changed || is_of_bridge ? diagnosis::changed_bytes : what);
+    }
+    if (is_changed && !loss.diagnoses.empty()) loss.remark = seen->finding();
   }
   const stream_counter& counts = measured.tally().counts;
   if (wanted.ct_information == presence::yes && counts.packets > few_packets &&
@@ -285,6 +297,15 @@ void report_loss(stage_log& log, const stream_statistics& measured, const model&
     if (lost < few_lost) loss.outcome = std::min(loss.outcome, stage_verdict::warn);
   }
   log.report(std::move(loss));
+}
+
+bool find_other_source(stage_report& report, const stream_survey& seen) {
+  std::string finding = seen.finding();
+  if (finding.empty()) return false;
+  const bool is_another = seen.maker() != nullptr || seen.text() == text_kind::plain;
+  report.find(is_another ? diagnosis::other_device : diagnosis::changed_bytes);
+  report.remark = std::move(finding);
+  return true;
 }
 
 bool find_other_layout(stage_report& report, const layout_recogniser& seen, const model& wanted) {

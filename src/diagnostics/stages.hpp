@@ -16,6 +16,7 @@
 #include "g4lidar/filter.hpp"
 #include "reply_statistics.hpp"
 #include "stream_statistics.hpp"
+#include "survey/stream_survey.hpp"
 
 namespace g4lidar {
 
@@ -65,7 +66,7 @@ void examine_file(const std::string& source, stage_log& log);
 
 /// identity; false for another model than `wanted`.
 bool report_identity(stage_log& log, const std::optional<device_information>& known,
-                     const model& wanted);
+                     const model& wanted, std::uint32_t baud = 0);
 /// health; false if the device reports an error.
 bool report_health(stage_log& log, const std::optional<health>& known);
 /// Up to this number of packets the motor cannot be evaluated.
@@ -75,7 +76,10 @@ void judge_motor(stage_report& motor, const stream_statistics& measured);
 /// rate, by the rates of `wanted`.
 void report_rate(stage_log& log, const stream_statistics& measured, const device_snapshot& known,
                  const model& wanted);
-void report_loss(stage_log& log, const stream_statistics& measured, const model& wanted);
+/// `seen`: the same bytes; null: they were not examined. `is_network`: they came through a network, not from a line of
+/// this computer.
+void report_loss(stage_log& log, const stream_statistics& measured, const model& wanted,
+                 const stream_survey* seen = nullptr, bool is_network = false);
 /// returns: whether something came back, and the sectors from which nothing did, but for directions that the user
 /// leaves out.
 void report_returns(stage_log& log, const stream_statistics& measured, const device_snapshot& known,
@@ -92,6 +96,8 @@ void report_latency(stage_log& log, const stream_statistics& measured, std::uint
 /// "10c4:ea60": vendor and product.
 [[nodiscard]] std::string usb_id_of(const port_info& port);
 /// Whether the samples have a size that no lidar like `wanted` sends; then adds this to `report`.
+/// What was examined is no stream of a lidar: of another maker, text, or changed on the way. Returns whether it is not.
+bool find_other_source(stage_report& report, const stream_survey& seen);
 bool find_other_layout(stage_report& report, const layout_recogniser& seen, const model& wanted);
 /// Whether this path leads to a pseudo-terminal.
 [[nodiscard]] bool is_pty(const std::string& path);

@@ -129,6 +129,12 @@ lidar_search::found lidar_search::judge_silent(lidar_signs known, std::int64_t u
   any.answers = presence::yes;  // if it were heard
   any.id = any.ct_id_low_bits = 0;
   auto all = models_that_fit(any);
+  const lidar_signs one_way{.sample_bytes = known.sample_bytes,
+                            .sample_rate_hz = known.sample_rate_hz,
+                            .answers = presence::no};
+  const bool is_far = !all.empty() && !may_measure(*all.front(), known.sample_rate_hz);
+  auto others = models_that_fit(one_way);
+  if (is_far && !others.empty() && may_measure(*others.front(), known.sample_rate_hz)) all.clear();
   // A device that boots, or is busy, may stop later.
   const bool has_time = port_.now_ns() + one_stop_ns + information_ns < deadline_ns_;
   if (!all.empty() && has_time) return failure(task::asking, problem::does_not_stop, port_.name());

@@ -23,8 +23,6 @@ std::uint32_t rate_difference(const model& row, std::uint32_t hz) noexcept {
   return least;
 }
 
-bool is_far(const model& row, std::uint32_t hz) noexcept { return rate_difference(row, hz) > 10; }
-
 /// Moves those for which `is_last` is true behind the others; both keep their order. Returns the number of the others.
 /// Not std::stable_partition, which uses a deprecated function, as clang reports.
 template <class Predicate>
@@ -46,6 +44,18 @@ bool has_rate(const model& row, std::uint32_t baud) noexcept {
                              [baud](std::uint32_t own) { return is_tolerable(baud, own); });
 }
 
+bool may_measure(const model& row, std::uint32_t hz) noexcept {
+  return rate_difference(row, hz) <= 10;
+}
+
+bool is_surely_another(const model& stated, std::uint8_t number, std::uint32_t baud) noexcept {
+  return std::ranges::any_of(models, [&](const model& row) {
+    return std::ranges::find(row.ids, number) != row.ids.end() &&
+           may_send(row, sample_size(stated.samples.layout), false) &&
+           (baud == 0 || has_rate(row, baud));
+  });
+}
+
 std::vector<const model*> models_that_fit(const lidar_signs& seen) {
   const auto all_with = [&seen](bool by_rate, bool by_ct) {
     std::vector<const model*> found;
@@ -63,7 +73,7 @@ std::vector<const model*> models_that_fit(const lidar_signs& seen) {
     }
     return found;
   };
-  const auto is_far_off = [&seen](const model* row) { return is_far(*row, seen.sample_rate_hz); };
+  const auto is_far_off = [&seen](const model* row) { return !may_measure(*row, seen.sample_rate_hz); };
   // A number does not need an uncertain rate.
   std::vector<const model*> found = all_with(seen.is_baud_certain || seen.id == 0, true);
   const bool is_stated = seen.id != 0 || seen.ct_id_low_bits != 0;
@@ -92,7 +102,7 @@ std::vector<const model*> models_that_fit(const lidar_signs& seen) {
 
 bool may_be_two_way(const lidar_signs& seen) {
   const std::vector<const model*> all = models_that_fit(seen);
-  const auto is_near = [&seen](const model* row) { return !is_far(*row, seen.sample_rate_hz); };
+  const auto is_near = [&seen](const model* row) { return may_measure(*row, seen.sample_rate_hz); };
   if (std::ranges::any_of(all, is_near)) {
     return std::ranges::any_of(all,
                                [&](const model* row) { return is_near(row) && is_two_way(row); });

@@ -48,6 +48,14 @@ struct lidar_signs {
   return std::span(row.bauds).first(row.bauds[1] != 0 ? 2 : 1);
 }
 
+/// Whether it measures so many samples a second at one of its rates, to a tenth. 0: not known, and true. *Pure.*
+[[nodiscard]] bool may_measure(const model& row, std::uint32_t hz) noexcept;
+
+/// Whether a two-way lidar that reports `number` is another one than `stated`, and nothing else than the number will show
+/// it: a model with this number has samples of the same size, and this rate (0: not known). *Pure.*
+[[nodiscard]] bool is_surely_another(const model& stated, std::uint8_t number,
+                                     std::uint32_t baud) noexcept;
+
 /// Whether a two-way model may send such packets: one fits, and with the sample rate, unless only one-way
 /// models have that. *Allocates.*
 [[nodiscard]] bool may_be_two_way(const lidar_signs& seen);

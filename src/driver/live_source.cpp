@@ -134,13 +134,8 @@ result<void> live_source::identified(const device_information& who) {
 bool live_source::refuses(const device_information& who) const noexcept {
   if (options_.insist_on_model || recognised_.get().by == known_by::samples) return false;
   const model& stated = *options_.model;
-  if (stated.link == link_kind::one_way) return true;
-  const std::uint32_t baud = connection_.on().baud();
-  return std::ranges::any_of(models, [&](const model& row) {
-    const bool has_number = std::ranges::find(row.ids, who.model) != row.ids.end();
-    return has_number && sample_size(row.samples.layout) == sample_size(stated.samples.layout) &&
-           (baud == 0 || has_rate(row, baud));
-  });
+  return stated.link == link_kind::one_way ||
+         is_surely_another(stated, who.model, connection_.on().baud());
 }
 
 /// The samples have another size than those of the model: they decide, unless the user does.

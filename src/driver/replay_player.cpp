@@ -287,6 +287,7 @@ void replay_player::play(const recorded_event& what) {
       lost_.is_lost = true;
       return report(lidar_event::kind::lost, what.reason);
     case recorded_event::kind::begun:
+      follow_samples();  // here the recorded driver did
       delivers_ = what.delivers;
       sample_rate_hz_ = what.sample_rate_hz;
       return pipeline_.begin(sample_rate_hz_);

@@ -54,6 +54,7 @@ enum class diagnosis : std::uint8_t {
   busy,
   interference,
   bad_baud_rate,
+  changed_bytes,
   wrong_baud_rate,
   silent,
   deaf,

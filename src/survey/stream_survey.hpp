@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: MIT
+// The examination of the bytes of a stream: facts that the search, the doctor and the errors read.
+#pragma once
+
+#include <string>
+
+#include "driver/unrecognised_bytes.hpp"
+#include "g4lidar/core/layout_recogniser.hpp"
+#include "other_makers.hpp"
+#include "text_signs.hpp"
+
+namespace g4lidar {
+
+/// *Single thread.* Takes bytes as they come, and adds none of its own.
+class stream_survey {
+ public:
+  void sent(bytes command) noexcept { all_.sent(command); }
+  void received(bytes data) noexcept {
+    all_.received(data);
+    layout_.take(data);
+    maker_.take(data);
+    text_.take(data);
+  }
+  /// The input has ended.
+  void finish() noexcept {
+    layout_.finish();
+    maker_.finish();
+  }
+  /// The bytes that follow do not continue the earlier ones, as after another baud rate.
+  void part() noexcept {
+    layout_ = {};
+    maker_ = {};
+  }
+
+  /// Packets of which layout; since part().
+  [[nodiscard]] const layout_recogniser& layout() const noexcept { return layout_; }
+  /// Who sends frames of another protocol; null: nobody is recognised. Valid forever.
+  [[nodiscard]] const other_maker* maker() const noexcept { return maker_.found(); }
+  /// All bytes, whether they are text, and how they were changed on the way.
+  [[nodiscard]] const unrecognised_bytes& all() const noexcept { return all_; }
+  [[nodiscard]] text_kind text() const noexcept { return text_.text(); }
+  [[nodiscard]] stream_change change() const noexcept { return text_.change(); }
+  /// Who or what it is, in sentences; empty: packets of a lidar, or not known. *Allocates.*
+  [[nodiscard]] std::string finding() const;
+
+ private:
+  layout_recogniser layout_;
+  maker_recogniser maker_;
+  text_signs text_;
+  unrecognised_bytes all_;
+};
+
+}  // namespace g4lidar
