@@ -154,7 +154,7 @@ bool live_run::interview() {
     device_ = replies_.snapshot(*lidar_.which);
   }
   if (link_.is_over()) return false;
-  return report_identity(log_, device_.information, *lidar_.which, link_.port().baud()) &&
+  return report_identity(log_, device_.information, *lidar_.which, lidar_.is_named) &&
          report_health(log_, device_.condition);
 }
 

@@ -138,7 +138,7 @@ std::string words_of(std::span<const model* const> all) {
 }
 
 bool report_identity(stage_log& log, const std::optional<device_information>& known,
-                     const model& wanted, std::uint32_t baud) {
+                     const model& wanted, bool is_named) {
   if (!known) {
     log.skip(diagnostic_stage::identity, "There is no device information.");
     return true;
@@ -156,7 +156,8 @@ bool report_identity(stage_log& log, const std::optional<device_information>& kn
   const bool is_surely_other =
       wanted.link == link_kind::one_way
           ? one_way_other_than(wanted, known->model) != nullptr
-          : !other_product(known->model).empty() || is_surely_another(wanted, known->model, baud);
+          : !other_product(known->model).empty() ||
+                (is_named && !models_that_fit({.id = known->model}).empty());
   if (!is_wanted) {
     identity.find(is_surely_other ? diagnosis::other_device : diagnosis::other_number);
     identity.remark = other_number(known->model, wanted);

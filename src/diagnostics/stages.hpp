@@ -66,7 +66,7 @@ void examine_file(const std::string& source, stage_log& log);
 
 /// identity; false for another model than `wanted`.
 bool report_identity(stage_log& log, const std::optional<device_information>& known,
-                     const model& wanted, std::uint32_t baud = 0);
+                     const model& wanted, bool is_named);
 /// health; false if the device reports an error.
 bool report_health(stage_log& log, const std::optional<health>& known);
 /// Up to this number of packets the motor cannot be evaluated.

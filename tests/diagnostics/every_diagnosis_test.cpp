@@ -21,6 +21,7 @@
 #include "diagnostics/odd_links.hpp"
 #include "g4lidar/transport/serial_port.hpp"
 #include "transport/pty.hpp"
+#include "transport/temporary_file.hpp"
 
 /// Whether ports have another baud rate than the one that was set, as with a bridge that cannot do it.
 static bool has_other_rate = false;
@@ -51,6 +52,12 @@ examined on_source(const std::string& source) {
   examined done;
   done.stages = diagnose(source);
   return done;
+}
+
+/// The bytes of a port, as somebody has copied them from a screen.
+examined on_text() {
+  const temporary_file file("AA 55 00 28 A9 74 09 85 CA 8C AD 2B 58 2C 08 2D\n");
+  return on_source("file:" + file.path());
 }
 
 /// Opening fails, for this reason.
@@ -123,7 +130,10 @@ const std::vector<scenario> scenarios{
     {"frequency_off", "frequency_off",
      [] { return on_link(wrap_in<lying_link>(response_kind::frequency)); }},
     {"other_device", "other_device",
+     [] { return examine(with([](auto& options) { options.info.model = 52; })); }},
+    {"number_that_no_model_has", "other_number",
      [] { return examine(with([](auto& options) { options.info.model = 99; })); }},
+    {"changed_bytes", "changed_bytes", on_text},
     {"motor_stuck", "motor_stuck",
      [] { return examine(with([](auto& options) { options.standstill_ns = 60'000'000'000; })); }},
     {"motor_unsteady", "motor_unsteady",

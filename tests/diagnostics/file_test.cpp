@@ -83,6 +83,54 @@ TEST(Bytes, ShowDamage) {
   EXPECT_EQ(in_file(bytes_of({"jolt"}, 6)).diagnoses(), "jolts");
 }
 
+/// `all` with something before each byte `what`.
+std::string with_before(const std::string& all, char what, std::string_view added) {
+  std::string made;
+  for (const char each : all) {
+    if (each == what) made += added;
+    made += each;
+  }
+  return made;
+}
+
+TEST(Bytes, ThatWereChangedOnTheWay_AreNoFaultOfTheLine) {
+  struct change {
+    std::string content;
+    std::string_view remark;
+  };
+  const std::string all = bytes_of({}, 6);
+  std::string hex;
+  for (std::size_t i = 0; i < 4000; ++i) {
+    constexpr std::string_view digits = "0123456789abcdef";
+    const auto byte = static_cast<unsigned char>(all[all.size() - 4000 + i]);
+    hex.append({digits[byte >> 4U], digits[byte & 15U], i % 16 == 15 ? '\n' : ' '});
+  }
+  for (const auto& [content, remark] :
+       {change{with_before(all, '\n', "\r"), "Each 0A has a 0D before it"},
+        change{"\xFF\xFB\x01\xFF\xFD\x03" + with_before(all, '\xFF', "\xFF"), "speaks telnet"},
+        change{hex, "`xxd -r -p`"}}) {
+    const examined done = in_file(content, &g4_model);
+    EXPECT_EQ(done.diagnoses(), "changed_bytes") << done;
+    std::string remarks;
+    for (const stage_report& each : done.stages) remarks += each.remark;
+    EXPECT_NE(remarks.find(remark), std::string::npos) << done;
+    for (const stage_report& each : done.stages) {
+      for (const diagnosis what : each.diagnoses) {
+        EXPECT_EQ(describe(what).cause.find("reflection"), std::string_view::npos) << done;
+      }
+    }
+  }
+}
+
+TEST(Bytes, OfAnotherMakerAreNamed) {
+  std::string positions;
+  for (int i = 0; i < 20; ++i)
+    positions += "$GNGGA,023610.00,4004.7,N,11614.2,E,1,12,0.9,60.1,M,-9.0,M,,*58\r\n";
+  const examined done = in_file(positions);
+  EXPECT_EQ(done.diagnoses(), "other_device") << done;
+  EXPECT_NE(done.at(diagnostic_stage::baud_rate).remark.find("NMEA"), std::string::npos) << done;
+}
+
 TEST(Bytes, OfAnotherRateOrModelAreFound) {
   EXPECT_EQ(in_file(bytes_of({"baud", "scanning"}, 3)).diagnoses(), "wrong_baud_rate");
   sim::device_options options;
