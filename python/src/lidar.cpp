@@ -245,6 +245,26 @@ void bind_reading(Class& made) {
           "All models that send such bytes; it is read as the first. One alone if it was named, or "
           "if the device answers. If the first is not yours, name yours: open(model='x3').")
       .def_prop_ro(
+          "recognition",
+          [](live_lidar& on) {
+            return on.look([](lidar& device) {
+              const recognition now = device.recognition();
+              nb::dict all;
+              all["model"] = std::string(now.model->word);
+              all["candidates"] = words_of(now.candidates);
+              all["known_by"] = std::string(name_of(now.by));
+              all["number"] = int{now.number};
+              all["baud"] = now.baud;
+              all["is_silent"] = now.is_silent;
+              all["was_stopped"] = now.was_stopped;
+              all["contradictions"] = contradictions_of(now);
+              return all;
+            });
+          },
+          nb::sig("def recognition(self) -> dict[str, object]"),
+          "As which model it is read, from what that is known ('known_by': 'user', 'number', "
+          "'samples', ...), and what contradicts it, in sentences.")
+      .def_prop_ro(
           "name",
           [](live_lidar& on) {
             return on.look([](lidar& device) { return std::string(device.name()); });

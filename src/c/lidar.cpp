@@ -269,8 +269,26 @@ const g4lidar_identity* g4lidar_get_identity(const g4lidar_lidar* lidar) {
   return lidar == nullptr ? nullptr : &lidar->identity;
 }
 
-const char* g4lidar_get_candidates(const g4lidar_lidar* lidar) {
-  return lidar == nullptr ? nullptr : lidar->candidates.c_str();
+const g4lidar_recognition* g4lidar_get_recognition(g4lidar_lidar* lidar) {
+  const int code = guarded(
+      nullptr,
+      [&] {
+        const recognition now = lidar->made->recognition();
+        lidar->candidates = model_words(now.candidates);
+        lidar->contradictions = contradictions_of(now);
+        lidar->recognised = {.model = now.model->word.data(),
+                             .candidates = lidar->candidates.c_str(),
+                             .known_by = name_of(now.by).data(),
+                             .contradictions = lidar->contradictions.c_str(),
+                             .baud = now.baud,
+                             .number = now.number,
+                             .is_silent = now.is_silent,
+                             .was_stopped = now.was_stopped,
+                             .reserved = 0};
+        return G4LIDAR_OK + 0;
+      },
+      lidar);
+  return code == G4LIDAR_OK ? &lidar->recognised : nullptr;
 }
 
 const char* g4lidar_name(g4lidar_lidar* lidar) {

@@ -109,7 +109,6 @@ result<void> connect(g4lidar_lidar& handle) {
   if (!opened) return tl::unexpected(opened.error());
   handle.made = std::make_unique<lidar>(std::move(*opened));
   handle.identity = identity_of(handle.made->information());
-  handle.candidates = model_words(candidates_of(*handle.made));
   if (wanted.recorder && wanted.recording.empty()) describe(*handle.made, *wanted.recorder);
   return {};
 }

@@ -109,7 +109,7 @@ TEST(CArguments, NullIsAnErrorOfFunctionsWithoutErrorStruct) {
   EXPECT_EQ(g4lidar_port_monitor_descriptor(nullptr), -1);
   EXPECT_EQ(g4lidar_get_identity(nullptr), nullptr);
   EXPECT_EQ(g4lidar_name(nullptr), nullptr);
-  EXPECT_EQ(g4lidar_get_candidates(nullptr), nullptr);
+  EXPECT_EQ(g4lidar_get_recognition(nullptr), nullptr);
   EXPECT_EQ(g4lidar_get_counts(nullptr), nullptr);
   EXPECT_EQ(g4lidar_recorder_get_counts(nullptr), nullptr);
   EXPECT_EQ(g4lidar_playback_info(nullptr), nullptr);

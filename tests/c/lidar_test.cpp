@@ -94,7 +94,13 @@ TEST(CLidar, KnowsTheDevice) {
   EXPECT_EQ(identity->firmware_major, 3);
   EXPECT_EQ(identity->firmware_minor, 7);
   EXPECT_STREQ(g4lidar_name(it.get()), "virtual:g4");
-  EXPECT_STREQ(g4lidar_get_candidates(it.get()), "g4");
+  const g4lidar_recognition* const known = g4lidar_get_recognition(it.get());
+  ASSERT_NE(known, nullptr);
+  EXPECT_STREQ(known->model, "g4");
+  EXPECT_STREQ(known->candidates, "g4");
+  EXPECT_STREQ(known->contradictions, "");
+  EXPECT_EQ(known->number, 5);
+  EXPECT_EQ(known->baud, 230'400U);
   g4lidar_health health{99, 99};
   ASSERT_EQ(g4lidar_get_health(it.get(), G4LIDAR_REFUSE, &health, nullptr), G4LIDAR_OK);
   EXPECT_EQ(health.status, G4LIDAR_HEALTHY);

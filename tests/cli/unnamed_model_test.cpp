@@ -149,7 +149,10 @@ TEST_F(FoundModel, NamedModelDecides) {
     const outcome done = run(words);
     ASSERT_EQ(done.code, 0) << done.err;
     const json found = json::parse(done.out).at("lidar");
-    EXPECT_EQ(found, (json{{"model", "x3"}, {"candidates", {"x3"}}}));
+    EXPECT_EQ(found, (json{{"model", "x3"},
+                           {"candidates", {"x3"}},
+                           {"known_by", "user"},
+                           {"contradictions", ""}}));
     EXPECT_THAT(done.err, Not(HasSubstr("read as")));
   }
 }

@@ -54,9 +54,11 @@ lidar_diagnostics::lidar_diagnostics(dds::bus& on, const ros2_options& options,
   if (!name.empty()) prefix_.append(name).append(" ");
 }
 
-void lidar_diagnostics::name_models(std::span<const model* const> candidates) {
+void lidar_diagnostics::name_models(const recognition& found) {
   const std::lock_guard lock(mutex_);
-  models_ = g4lidar::model_words(candidates);
+  models_ = g4lidar::model_words(found.candidates);
+  known_by_ = name_of(found.by);
+  contradictions_ = contradictions_of(found);
 }
 
 void lidar_diagnostics::update(const source_reader& device, const scan_messages& messages,
@@ -71,7 +73,11 @@ void lidar_diagnostics::update(const source_reader& device, const scan_messages&
   diagnostic_status first = status_of_state(state, device.why());
   {
     const std::lock_guard lock(mutex_);
-    if (!models_.empty()) first.values.emplace_back("candidates", models_);
+    if (!models_.empty()) {
+      first.values.emplace_back("candidates", models_);
+      first.values.emplace_back("known_by", known_by_);
+    }
+    if (!contradictions_.empty()) first.values.emplace_back("contradictions", contradictions_);
   }
   statuses.insert(statuses.begin(), std::move(first));
   statuses.push_back(topics_.status(messages.counts()));

@@ -107,7 +107,7 @@ void lidar_node::show_model(const model& which) {
 
 void lidar_node::on_open(g4lidar::lidar& device) {
   show_model(*candidates_of(device).front());
-  diagnostics_.name_models(candidates_of(device));
+  diagnostics_.name_models(device.recognition());
   if (is_played_) {
     feed_.follow(*device.player());
     now_ns_ = stamp_ns(device.player()->begin_ns());

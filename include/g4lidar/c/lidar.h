@@ -199,10 +199,23 @@ typedef struct g4lidar_identity {
 
 /** What the device reported when it was opened. Valid as long as the lidar. */
 G4LIDAR_C_API const g4lidar_identity* g4lidar_get_identity(const g4lidar_lidar* lidar);
-/** The models between which the bytes of the lidar do not decide, the one as which it is read first: "x2, x2l,
- *  x3". One alone if it was named, or if the device answers. Name yours with g4lidar_options.model. Valid as long as
- *  the lidar. */
-G4LIDAR_C_API const char* g4lidar_get_candidates(const g4lidar_lidar* lidar);
+/** As which model a lidar is read, from what that is known, and what contradicts it. */
+typedef struct g4lidar_recognition {
+  const char* model; /**< "x2". Name yours with g4lidar_options.model. */
+  /** The models between which its bytes do not decide, `model` first: "x2, x2l, x3". One alone if it was named, or if
+   *  the device answers. */
+  const char* candidates;
+  const char* known_by;       /**< "nothing", "user", "recording", "number" or "samples". */
+  const char* contradictions; /**< Sentences for the user; "": nothing contradicts. */
+  uint32_t baud;              /**< Of the line; 0: not known. */
+  uint8_t number;             /**< Of its model, as the device reports it; 0: it does not. */
+  bool is_silent;             /**< It should answer, and only sends. */
+  bool was_stopped;           /**< It was scanning when it was opened. */
+  uint8_t reserved;           /**< 0. */
+} g4lidar_recognition;
+
+/** What is known now; NULL for a NULL lidar, or without memory. Valid until the next call of this function. */
+G4LIDAR_C_API const g4lidar_recognition* g4lidar_get_recognition(g4lidar_lidar* lidar);
 /** The name of the connection, "/dev/ttyUSB0". */
 G4LIDAR_C_API const char* g4lidar_name(g4lidar_lidar* lidar);
 /** Whether a scan was started and not stopped; false while the device is lost. */

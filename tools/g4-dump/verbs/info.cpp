@@ -31,6 +31,8 @@ struct device_facts {
   std::vector<maybe_answer> settings{all_settings().size()};  ///< In the order of all_settings().
   /// The model, and the others that send the same bytes; empty: not known.
   std::vector<const g4lidar::model*> candidates{};
+  std::string_view known_by{};   ///< The model; of a device.
+  std::string contradictions{};  ///< See contradictions_of().
   std::string_view why_unknown = "no answer";  ///< For settings that a lidar can be asked for.
 };
 
@@ -62,6 +64,8 @@ device_facts facts_of_device(const common_options& options) {
   if (!lidar.information().is_known()) listen(lidar);
   if (lidar.information().is_known()) facts.information = lidar.information();
   facts.candidates.assign(source.candidates().begin(), source.candidates().end());
+  facts.known_by = name_of(lidar.recognition().by);
+  facts.contradictions = contradictions_of(lidar.recognition());
   for (std::size_t i = 0; i < facts.settings.size(); ++i) {
     facts.settings[i] = read_setting(lidar, all_settings()[i]);
   }
@@ -102,6 +106,10 @@ void write(const device_facts& facts, bool as_json, output& out) {
   all.update(json_of(facts.information));
   if (!as_json && !facts.candidates.empty()) all["model"] = words_for(facts.candidates);
   if (as_json) all["lidar"] = json_of(facts.candidates);
+  if (as_json && !facts.known_by.empty()) {
+    all["lidar"]["known_by"] = facts.known_by;
+    all["lidar"]["contradictions"] = facts.contradictions;
+  }
   for (std::size_t i = 0; i < facts.settings.size(); ++i) {
     ordered_json& value = all[std::string(all_settings()[i].name)];
     value = as_json ? json_of(facts.settings[i]) : ordered_json(words_for(facts, i));
