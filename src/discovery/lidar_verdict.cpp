@@ -124,6 +124,10 @@ lidar_search::found lidar_search::judge_silent(lidar_signs known, std::int64_t u
     known.answers = presence::no;
     auto silent = models_that_fit(known);
     if (!silent.empty()) return made(std::move(silent), known);
+  } else {
+    const auto has_rate = [this] { return heard_.stream.rate_hz() != 0; };
+    if (auto done = listen(until_ns, has_rate); !done) return tl::unexpected(done.error());
+    known.sample_rate_hz = heard_.stream.rate_hz();
   }
   lidar_signs any = known;
   any.answers = presence::yes;  // if it were heard

@@ -30,6 +30,8 @@ TEST(StreamCounts, AreConsistentAtEveryMoment) {
   append(stream, hurt.data());
   stream.back() ^= 0x40;
   append(stream, std::vector<std::uint8_t>{0xAA, 0x55, 0x00, 0x51});  // 81 samples
+  append(stream,
+         std::vector<std::uint8_t>{0xAA, 0x55, 0x00, 0x00, 0x01, 0x10, 0x01, 0x10, 0xAA, 0x55});
   append(stream, good.data());
   append(stream, good.data().first(33));
 
@@ -45,7 +47,8 @@ TEST(StreamCounts, AreConsistentAtEveryMoment) {
   EXPECT_EQ(counts.suspect, 1U);
   EXPECT_EQ(counts.points, 80U);
   EXPECT_EQ(counts.responses, 1U);
-  EXPECT_EQ(counts.parsed_bytes, 7U + 90U + 24U + 90U);
+  EXPECT_EQ(counts.empty_packets, 1U);
+  EXPECT_EQ(counts.parsed_bytes, 7U + 90U + 24U + 90U + 10U);
   EXPECT_EQ(counts.skipped(skip_reason::noise), 4U);
   EXPECT_EQ(counts.skipped(skip_reason::bad_checksum), 20U);
   EXPECT_EQ(counts.skipped(skip_reason::bad_header), 4U);

@@ -69,6 +69,74 @@ void expect_harmless(const std::vector<std::string>& notes, bool may_pulse) {
   }
 }
 
+/// What sends and answers nothing, at a rate that its model does not have: read as it is, and with that rate.
+TEST(Search, OneWayLidarsAtAnyRate_AreFound_NamedOrNot) {
+  for (const std::uint32_t baud : {150'000U, 153'600U, 214'285U, 256'000U}) {
+    for (const bool is_named : {false, true}) {
+      SCOPED_TRACE(std::to_string(baud) + (is_named ? ", named" : ""));
+      sim::device_options options = options_of("s2-pro", true);
+      options.baud = baud;
+      const model& named = *model_named("s2-pro-intensity");
+      const searched done = search_at(options, {.model = is_named ? &named : nullptr});
+      ASSERT_TRUE(done.lidar) << done.lidar.error().message();
+      EXPECT_NEAR(done.lidar->baud, baud, 0.04 * baud);  // bytes arrive
+      EXPECT_EQ(sample_size(done.lidar->model->samples.layout), 3U);
+      EXPECT_EQ(done.lidar->model->link, link_kind::one_way);
+      EXPECT_EQ(done.lidar->by == known_by::user, is_named);
+      if (!is_named) continue;
+      EXPECT_TRUE(done.notes.empty()) << text_of(done.notes);
+    }
+  }
+}
+
+/// The packets of a named model that gets no byte must have its samples.
+TEST(Search, OneWayLidarWithOtherSamples_IsRefused_AndTheTextStatesThem) {
+  const searched done =
+      search_at(options_of("s2-pro", true), {.model = model_named("x2"), .baud = 115'200});
+  ASSERT_FALSE(done.lidar);
+  EXPECT_EQ(done.lidar.error(), problem::other_device);
+  EXPECT_EQ(done.lidar.error().detail(), error_detail::other_samples);
+  EXPECT_NE(done.lidar.error().subject().find("samples of 3 bytes at 115200 baud, not of 2"),
+            std::string_view::npos)
+      << done.lidar.error().subject();
+}
+
+/// A lidar of which only the data wire is connected, or a COIN-D4.
+TEST(Search, TwoWayLidarThatAnswersNothing_IsReadOnly) {
+  for (const char* const word : {"t-mini-plus", "g4", "tg30"}) {
+    SCOPED_TRACE(word);
+    const searched done =
+        search_at(options_of(word), {},
+                  {sim::make_fault(fault_kind::scanning), sim::make_fault(fault_kind::deaf)});
+    ASSERT_TRUE(done.lidar) << done.lidar.error().message();
+    EXPECT_TRUE(done.lidar->is_silent);
+    EXPECT_EQ(sample_size(done.lidar->model->samples.layout),
+              sample_size(model_named(word)->samples.layout));
+  }
+}
+
+/// The number and the samples of a lidar that scans contradict: all pairs of models at one rate.
+TEST(Search, SamplesThatContradictTheNumber_Decide) {
+  int pairs = 0;
+  for (const model& real : models) {
+    for (const model& number : models) {
+      const std::size_t size = sample_size(real.samples.layout);
+      const bool differs = sample_size(number.samples.layout) != size;
+      const bool are_two_way = real.link == link_kind::two_way && number.link == link_kind::two_way;
+      if (!are_two_way || !differs || real.motor == motor_kind::dtr) continue;
+      SCOPED_TRACE(std::string(real.word) + " with the number of " + std::string(number.word));
+      ++pairs;
+      sim::device_options options = options_of(real.word);
+      options.info.model = number.ids[0];
+      const searched done = search_at(options, {}, {sim::make_fault(fault_kind::scanning)});
+      ASSERT_TRUE(done.lidar) << done.lidar.error().message();
+      EXPECT_EQ(sample_size(done.lidar->model->samples.layout), size);
+      EXPECT_EQ(done.lidar->device.model, number.ids[0]);
+    }
+  }
+  EXPECT_GT(pairs, 50);
+}
+
 TEST(Search, EveryModel_IsFoundInTime) {
   std::printf("| model | time | baud | name | candidates | written |\n|---|---|---|---|---|---|\n");
   for (const model& each : models) {

@@ -24,6 +24,7 @@ void draw_additions(dice& d, sim::device_options& device) {
   device.stray_after_start = leading == 1;
   device.ct_crc = leading == 2;
   device.time_packet_ns = d.chance(0.5) ? d.between(50 * ms, second) : 0;
+  device.empty_packets = d.chance(0.3);
   device.scanner.index_deg = d.chance(0.5) ? device.scanner.index_deg : d.real(0.0, 359.9);
 }
 

@@ -116,6 +116,28 @@ TEST(LiveFastest, IsReadAtScanPaceWithoutAHeapCall) {
 
 INSTANTIATE_TEST_SUITE_P(All, LiveModel, ::testing::ValuesIn(models), name_in_test);
 
+// ---- packets without samples --------------------------------------------------------------------
+
+/// Nothing is lost by them, and each revolution is whole.
+TEST(LivePackets, WithoutSamples_AreCounted_AndLoseNothing) {
+  sim::device_options options = options_of(*model_named("x2"));
+  options.empty_packets = true;
+  bench on(*model_named("x2"), options);
+  auto lidar = on.open();
+  ASSERT_TRUE(lidar) << lidar.error().message();
+  ASSERT_TRUE(lidar->start());
+  for (int i = 0; i < 20; ++i) {
+    const auto scan = lidar->wait_scan(2000ms);
+    ASSERT_TRUE(scan) << scan.error().message();
+    if (i == 0) continue;
+    EXPECT_TRUE(scan->is_whole()) << i;
+  }
+  const lidar_counts counts = lidar->counts();
+  EXPECT_GE(counts.stream.empty_packets, 20U);
+  EXPECT_EQ(counts.samples_lost, 0U);
+  EXPECT_EQ(counts.stream.skipped(skip_reason::bad_header), 0U);
+}
+
 // ---- identity -----------------------------------------------------------------------------------
 
 TEST(LiveIdentity, AnotherModelThanTheNamedOne_IsAnErrorThatNamesBoth) {

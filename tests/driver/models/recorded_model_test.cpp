@@ -16,6 +16,7 @@
 #include "g4lidar/recording/writer.hpp"
 #include "g4lidar/sim/virtual_port.hpp"
 #include "g4lidar/sim/world.hpp"
+#include "g4lidar/transport/forwarding.hpp"
 #include "recording/recorded_run.hpp"
 
 namespace g4lidar {
@@ -72,6 +73,45 @@ TEST(RecordedModel, GivesTheSamePoints) {
     EXPECT_GT(first.size(), 1000U) << word;
     EXPECT_EQ(replayed(path.text()), first) << word;
   }
+}
+
+/// States that the model follows from the number of the device.
+class numbered_connector final : public forwarding_connector {
+ public:
+  numbered_connector(std::unique_ptr<connector> from, const model& which)
+      : forwarding_connector(std::move(from)), which_(&which) {}
+  [[nodiscard]] connector_traits traits() const noexcept override {
+    connector_traits known = forwarding_connector::traits();
+    known.recognised = {.model = which_, .by = known_by::number, .candidates = {&which_, 1}};
+    return known;
+  }
+
+ private:
+  const model* which_;
+};
+
+// The recording states the model of the number, and its driver has read the samples.
+TEST(RecordedModel, SamplesThatContradictTheNumber_GiveTheSamePoints) {
+  const model& number = *model_named("t-mini-plus");
+  sim::device_options options;
+  ASSERT_TRUE(sim::use_model(options, "t-mini-plus-sh"));
+  options.info.model = number.ids[0];
+  sim::device device(sim::built_in_world(), options);
+  sim::virtual_clock clock;
+  const temporary_path path;
+  auto writer = recording_writer::create(path.text(), {.model = &number});
+  ASSERT_TRUE(writer);
+  auto from = recorded(std::make_unique<numbered_connector>(
+                           std::make_unique<sim::virtual_connector>(device, clock), number),
+                       *writer);
+  ASSERT_TRUE(from);
+  auto opened = lidar::open(std::move(*from));
+  ASSERT_TRUE(opened) << opened.error().message();
+  const auto first = five_scans(*opened);
+  ASSERT_TRUE(opened->close());
+  ASSERT_TRUE(writer->close());
+  EXPECT_GT(first.size(), 1000U);
+  EXPECT_EQ(replayed(path.text()), first);
 }
 
 // The offset is in the answer to 93. Without it all angles of the replay would differ.
