@@ -88,6 +88,7 @@ enum class error_detail : std::uint8_t {
   several_models,  ///< bad_file: the parts of a recording state different models of lidar.
   other_samples,  ///< other_device: packets whose samples have another size than those of the named model.
   other_maker,  ///< other_device: packets of another maker, or of another kind of device.
+  not_passed,  ///< permission: not by the mode of the port: a container or a sandbox may not use the device.
 };
 
 /// One error. Trivially copyable, never allocates.

@@ -119,7 +119,7 @@ struct detail_words {
   std::string_view cause;
   std::string_view advice;
 };
-constexpr std::array<detail_words, 21> all_details{{
+constexpr std::array<detail_words, 22> all_details{{
     {"no scan arrived in time, because the motor spins up",
      "Call again or wait longer: the first scan arrives about 0.7 s after the start, later with a "
      "heavy or cold motor. If the head does not turn within 10 s, check the power supply."},
@@ -190,8 +190,11 @@ constexpr std::array<detail_words, 21> all_details{{
      "the port of the other lidar."},
     {"the bytes are those of a device of another kind, which this library does not read",
      "Use the driver of that device, or name the port of the lidar."},
+    {"the system does not let this process use the device, whatever the mode of the port",
+     "Pass the device to the container (`docker run --device /dev/ttyUSB0`), or allow it to the "
+     "service or the sandbox in which the program runs."},
 }};
-static_assert(all_details.size() == static_cast<std::size_t>(error_detail::other_maker));
+static_assert(all_details.size() == static_cast<std::size_t>(error_detail::not_passed));
 
 constexpr bool in_order() {
   for (std::size_t i = 0; i < all_words.size(); ++i) {

@@ -47,7 +47,7 @@ void report_unopened(stage_log& log, stage_report current, const error& why) {
   const diagnosis what = diagnosis_of(why.code());
   while (current.stage < stage_of(what)) pass(log, current);
   current.find(what);
-  current.remark = cause_of(why);
+  current.remark = why.detail() == error_detail::not_passed ? why.message() : cause_of(why);
   pass(log, current);
   log.skip_from(current.stage, "Not reached.");
 }
@@ -76,6 +76,9 @@ class port_stages {
     const std::string holder = find_holder(port);
     auto opened =
         serial_port::open(port.path, {.baud = first_baud(log_.options(), searched_first)});
+    const bool is_refused = !opened && opened.error() == problem::permission;
+    if (!is_refused) pass(log_, report_);
+    if (!holder.empty()) report_.add("held_by", holder);
     if (!opened) return give_up(opened.error());
     if (!holder.empty() && !is_pty(port.path)) {
       report_.find(diagnosis::interference);
@@ -118,6 +121,7 @@ class port_stages {
     return true;
   }
 
+  /// The stage ends when the port was opened: the system may refuse that for other reasons.
   bool look_at_permission(const std::string& path) {
     struct stat status{};
     if (::stat(path.c_str(), &status) == 0) {
@@ -128,7 +132,6 @@ class port_stages {
       report_.add("mode", digits_of(static_cast<unsigned>(status.st_mode) & 07777U, 8, 4));
     }
     if (::access(path.c_str(), R_OK | W_OK) != 0) return give_up(problem::permission, path, errno);
-    pass(log_, report_);
     return true;
   }
 
@@ -137,7 +140,6 @@ class port_stages {
     port_info here = port;
     here.path = real_path(port.path);
     find_holders(std::span(&here, 1));
-    if (!here.holder.empty()) report_.add("held_by", here.holder);
     return here.holder;
   }
 

@@ -159,6 +159,7 @@ TEST(SerialCalls, Failing_IsReported) {
       {call::stat, ENOENT, task::opening, problem::no_port},
       {call::stat, EACCES, task::opening, problem::permission},
       {call::open, EACCES, task::opening, problem::permission},
+      {call::open, EPERM, task::opening, problem::permission},
       {call::open, EBUSY, task::opening, problem::busy},
       {call::open, ENXIO, task::opening, problem::no_port},
       {call::open, EIO, task::opening, problem::no_port},
