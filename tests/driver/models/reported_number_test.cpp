@@ -80,12 +80,14 @@ TEST(ReportedNumber, NumberOfAOneWayLidar_IsRefusedOnlyIfItIsSurelyAnotherModel)
   }
 }
 
-// At 40 samples a packet: 3 kHz at 8 Hz are 11 packets a revolution, up to the month of the date; at 4 Hz 20.
+// At 40 samples a packet: 3 kHz at 8 Hz are 11 packets a revolution, up to the month of the date; at 4 Hz, which not
+// every model can, 20.
 TEST(ReportedNumber, NumberOfAOneWayLidarWithFewPackets_IsKnown) {
   for (const model& which : models) {
     if (which.link != link_kind::one_way || which.ct_information == presence::no) continue;
     for (const std::uint16_t chz : std::to_array<std::uint16_t>({400, 500, 600, 700, 800})) {
       sim::device_options options = options_of(which);
+      if (chz < options.scanner.format.min_frequency_chz) continue;
       options.ct_information = options.ct_crc = options.stray_before_zero = true;
       options.condition = {health_status::error, 1};
       options.scanner.scan_frequency_chz = chz;
