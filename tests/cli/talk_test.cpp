@@ -18,6 +18,7 @@ using cli::lines_of;
 using cli::outcome;
 using cli::run;
 using nlohmann::json;
+using ::testing::AllOf;
 using ::testing::ContainsRegex;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
@@ -88,8 +89,7 @@ TEST_F(Talk, ANumberThatTheModelDoesNotHave_IsReported) {
       "sim:?model=scl&model_id=4&ct_information=true&ct_crc=true&stray_before_zero=true";
   using words = std::vector<std::string>;
   for (const words& line : {words{"info", source}, {"health", source}, {"scan", source, "-n", "5"}})
-    EXPECT_THAT(run(line).err, HasSubstr("the lidar states the number 4, and an SCL has 22"))
-        << line[0];
+    EXPECT_THAT(run(line).err, AllOf(HasSubstr("number 4"), HasSubstr("SCL"))) << line[0];
 }
 
 TEST_F(Talk, Health_PrintsTheStatus) {
