@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "program.hpp"
-#include "recorded.hpp"
 #include "recording.hpp"
 
 namespace {
@@ -150,21 +149,6 @@ TEST_F(Failure, WrongCommandLine) {
 TEST_F(Failure, InvalidSource) {
   expect_sentence(run({"info", "serial:111"}), 2, "this does not name a lidar. ");
   expect_sentence(run({"info", "serial:111"}), 2, "Without SOURCE the only lidar is opened");
-}
-
-TEST_F(Failure, OptionOfAnotherKindOfSource) {
-  const std::string recording = path("walk.mcap");
-  ASSERT_EQ(cli::record_scans(recording, 2).code, 0);
-  const std::string lidar = "configuring raw_sample_rate_hz, and sim: is a live lidar: ";
-  expect_sentence(run({"dump", "sim:", "-n", "1", "--sample-rate", "4000"}), 2, lidar);
-  expect_sentence(run({"record", "sim:", "-n", "1", path("new.mcap"), "--sample-rate", "4000"}), 2,
-                  lidar);
-  expect_sentence(run({"view", "--once", "sim:", "--loop"}), 2, "loop, and sim: is a live lidar: ");
-  expect_sentence(run({"scan", recording, "--baud", "115200"}), 2,
-                  "baud, and " + recording + " is a recording: ");
-  expect_sentence(run({"record", recording, path("new.mcap"), "--sample-rate", "4000"}), 2,
-                  "is a recording: ");
-  EXPECT_FALSE(std::filesystem::exists(path("new.mcap")));
 }
 
 TEST_F(Failure, WrongCommandLineTouchesNoFile) {

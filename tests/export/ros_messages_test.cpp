@@ -238,19 +238,6 @@ TEST(PointCloud2, HoldsTheReturnsInTheRobotsFrame) {
   EXPECT_TRUE(read.is_at_end());
 }
 
-// In a scan turned by a motion, or merged from several lidars, the earliest point may be anywhere; 0 is no time.
-TEST(PointCloud2, BeginsAtTheEarliestTime) {
-  std::array<point, 4> points{};
-  EXPECT_EQ(cloud_time_ns({}), 0);
-  EXPECT_EQ(cloud_time_ns(points), 0);
-  points[1].time_ns = 7'000'000'000;
-  EXPECT_EQ(cloud_time_ns(points), 7'000'000'000);
-  points[3].time_ns = 5'000'000'000;
-  EXPECT_EQ(cloud_time_ns(points), 5'000'000'000);
-  points[0].time_ns = -1;
-  EXPECT_EQ(cloud_time_ns(points), -1);
-}
-
 TEST(PointCloud2, InTheFrameWithZDown) {
   const std::array<point, 1> points{{{.angle_deg = 135.0F,
                                       .range_mm = 2000.0F,
