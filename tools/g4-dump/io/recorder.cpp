@@ -195,6 +195,7 @@ class recorder {
   [[nodiscard]] failure why_not_written(bool is_kept) {
     if (writer_) path_ = writer_->path();
     const bool has_several = job_.title.empty() && !path_.empty();
+    // NOLINTNEXTLINE(bugprone-unchecked-optional-access): there is one
     return file_failure(*file_error_, has_several ? path_ : title_, is_kept);
   }
 
