@@ -10,10 +10,10 @@ int report(const g4lidar::error& why) {
 
 int main(int count, char** words) {
   using namespace std::chrono_literals;
-  g4lidar::lidar_options options;
-  options.frequency = g4lidar::scan_frequency::hz(10);  // revolutions per second
-  options.reconnect = true;                             // an unplug does not end the loop
-  auto lidar = g4lidar::lidar::open(count > 1 ? words[1] : "", options);  // "": the only lidar
+  g4lidar::lidar_options options{.device = count > 1 ? words[1] : ""};  // else the only lidar
+  options.frequency = g4lidar::scan_frequency::hz(10);                  // revolutions per second
+  options.reconnect = true;                                    // an unplug does not end the loop
+  auto lidar = g4lidar::lidar::open(usable_options(options));  // a recording has no frequency
   if (!lidar) return report(lidar.error());
   if (auto started = lidar->start(); !started) return report(started.error());
   int scans_left = 5;

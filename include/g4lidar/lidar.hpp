@@ -21,8 +21,8 @@
 #include "g4lidar/lidar_counts.hpp"
 #include "g4lidar/lidar_event.hpp"
 #include "g4lidar/lidar_options.hpp"
-#include "g4lidar/recognition.hpp"
 #include "g4lidar/point.hpp"
+#include "g4lidar/recognition.hpp"
 #include "g4lidar/recording/player.hpp"
 #include "g4lidar/scan.hpp"
 

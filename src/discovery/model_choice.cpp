@@ -73,7 +73,9 @@ std::vector<const model*> models_that_fit(const lidar_signs& seen) {
     }
     return found;
   };
-  const auto is_far_off = [&seen](const model* row) { return !may_measure(*row, seen.sample_rate_hz); };
+  const auto is_far_off = [&seen](const model* row) {
+    return !may_measure(*row, seen.sample_rate_hz);
+  };
   // A number does not need an uncertain rate.
   std::vector<const model*> found = all_with(seen.is_baud_certain || seen.id == 0, true);
   const bool is_stated = seen.id != 0 || seen.ct_id_low_bits != 0;

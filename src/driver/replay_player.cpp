@@ -188,7 +188,11 @@ bool replay_player::parse_bytes() {
       if (stated_.identity.take_news()) {
         // NOLINTNEXTLINE(bugprone-unchecked-optional-access): there is news
         if (!information_.is_known()) information_ = *stated_.identity.who();
-        if (stated_.identity.has_other_number()) report(lidar_event::kind::other_number);
+        if (stated_.identity.has_other_number()) {
+          // NOLINTNEXTLINE(bugprone-unchecked-optional-access): there is news
+          recognised_.set_device(stated_.identity.who()->model, 0);
+          report(lidar_event::kind::other_number);
+        }
       }
       if (const auto zero = pipeline_.zero().angle(); zero != stated_.recorded_zero) {
         stated_.record(

@@ -26,17 +26,22 @@ chunk_source::chunk_source(std::shared_ptr<byte_source> file, found_channels kno
 
 // ---- bytes --------------------------------------------------------------------------------------
 
-/// `size` bytes from `at` on (at most the size of the window), or all available ones.
-bytes chunk_source::window(std::uint64_t at, std::size_t size) {
+/// What the window has from `at` on: at least `least` bytes (at most its size), or all that the file has.
+bytes chunk_source::ahead(std::uint64_t at, std::size_t least) {
   const bool begins_in = at >= window_at_ && at <= window_at_ + window_size_;
   const std::uint64_t held = begins_in ? window_at_ + window_size_ - at : 0;
   const std::uint64_t there = at < size_ ? size_ - at : 0;
-  if (held < std::min<std::uint64_t>(size, there)) {
+  if (held < std::min<std::uint64_t>(least, there)) {
     window_at_ = at;
     window_size_ = file_->read(at, window_);
   }
   const std::uint64_t skipped = std::min<std::uint64_t>(at - window_at_, window_size_);
-  const bytes all = bytes(window_).first(window_size_).subspan(static_cast<std::size_t>(skipped));
+  return bytes(window_).first(window_size_).subspan(static_cast<std::size_t>(skipped));
+}
+
+/// `size` bytes from `at` on (at most the size of the window), or all available ones.
+bytes chunk_source::window(std::uint64_t at, std::size_t size) {
+  const bytes all = ahead(at, size);
   return all.first(std::min(size, all.size()));
 }
 
@@ -182,15 +187,15 @@ void chunk_source::lose_chunk(std::uint64_t at, std::uint64_t length) {
   return resynchronise(at + 1);
 }
 
-/// Searches for a chunk, from `from` on.
+/// Searches for a chunk, from `from` on. Bytes that were read are not read again for each wrong guess.
 void chunk_source::resynchronise(std::uint64_t from) {
   std::uint64_t at = from;
   while (at + record_header_size < limit_) {
     if (file_->is_cancelled()) return;
-    const auto part = window(at, window_room);
+    constexpr std::size_t wanted = record_header_size + longest_chunk_header;
+    const auto part = ahead(at, wanted + 1);
     if (part.size() < record_header_size) break;
     std::size_t i = 0;
-    constexpr std::size_t wanted = record_header_size + longest_chunk_header;
     const bool is_last = at + part.size() >= limit_;
     const std::size_t end = is_last || part.size() < wanted ? part.size() : part.size() - wanted;
     for (; i < end; ++i) {

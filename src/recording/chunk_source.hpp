@@ -51,6 +51,7 @@ class chunk_source {
 
  private:
   void look_at_end();
+  [[nodiscard]] bytes ahead(std::uint64_t at, std::size_t least);
   [[nodiscard]] bytes window(std::uint64_t at, std::size_t size);
   [[nodiscard]] bytes content(std::uint64_t at, std::size_t size);
   [[nodiscard]] std::optional<record_header> believe_at(bytes begin,

@@ -94,6 +94,24 @@ TEST_P(KeptSettings, AnAnswerIsLost) {
   }
 }
 
+TEST_P(KeptSettings, AnswersAreMissingWhileTheyAreSetBack) {
+  of_.declines = true;
+  bench first = of_;
+  static_cast<void>(first.run());
+  for (int i = 1; i <= 8; ++i) {
+    const std::int64_t at_ns = first.begun_ns.at(step::frequency) + i * 400 * ms;
+    of_.cancelled_at_ns = at_ns;
+    for (const auto kind : {sim::fault_kind::mute, sim::fault_kind::deaf}) {
+      for (const std::int64_t after_ms : {0, 300, 600, 900, 1'200}) {
+        const std::int64_t missing_ms = after_ms == 0 ? 4'000 : 700;
+        of_.faults = {sim::make_fault(kind, at_ns + after_ms * ms, missing_ms * ms)};
+        expect_kept(of_, std::string(sim::name_of(kind)) + " at " + std::to_string(at_ns) + " + " +
+                             std::to_string(after_ms));
+      }
+    }
+  }
+}
+
 TEST_P(KeptSettings, UnpluggedAndBack) {
   of_.declines = true;
   for (const std::int64_t at_ns : times_of(of_)) {

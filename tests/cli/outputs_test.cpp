@@ -32,6 +32,17 @@ words joined(words one, const words& more) {
   return one;
 }
 
+/// Runs it where files have at most so many bytes.
+outcome run_on_full_disk(rlim_t bytes, const words& line) {
+  rlimit before{};
+  ::getrlimit(RLIMIT_FSIZE, &before);
+  const rlimit limit{bytes, before.rlim_max};
+  ::setrlimit(RLIMIT_FSIZE, &limit);
+  const outcome done = run(line);
+  ::setrlimit(RLIMIT_FSIZE, &before);
+  return done;
+}
+
 class Outputs : public cli::scratch_here {
  protected:
   static void SetUpTestSuite() {
@@ -282,16 +293,32 @@ TEST_F(Outputs, NumbersOfExistingFilesAreLeftOut) {
   EXPECT_THAT(run({"record", "--help"}).out, HasSubstr("next free number"));
 }
 
+// It is full before the lidar is opened, or while a recording begins.
+TEST_F(Outputs, OnAFullDisk_ARecordingReplacesNothing) {
+  cli::write_file("old.mcap", "dear");
+  const std::size_t before = static_cast<std::size_t>(
+      std::distance(fs::directory_iterator("."), fs::directory_iterator()));
+  for (const rlim_t bytes : {rlim_t{10}, rlim_t{700}}) {
+    for (const words& line : {words{"record", "sim:", "-n", "1", "-o"},
+                              {"record", "walk.mcap", "-o"},
+                              {"acceptance", "--alone", "-d", "1s", "sim:", "--file"}}) {
+      const outcome done = run_on_full_disk(bytes, joined(line, {"old.mcap", "--force"}));
+      EXPECT_EQ(done.code, 10) << line[0] << bytes << done.err;
+      EXPECT_THAT(done.err, HasSubstr("cannot write 'old.mcap': File too large. Free some space"));
+      EXPECT_EQ(cli::read_file("old.mcap"), "dear") << line[0] << bytes;
+      EXPECT_EQ(run_on_full_disk(bytes, joined(line, {"new.mcap"})).code, 10) << line[0] << bytes;
+      EXPECT_FALSE(fs::exists("new.mcap")) << line[0] << bytes;
+    }
+  }
+  EXPECT_EQ(std::distance(fs::directory_iterator("."), fs::directory_iterator()),
+            static_cast<std::ptrdiff_t>(before));
+}
+
 TEST_F(Outputs, OnAFullDisk_NothingOfItRemains) {
-  rlimit before{};
-  ::getrlimit(RLIMIT_FSIZE, &before);
-  const rlimit limit{3'000, before.rlim_max};
   for (const std::string name : {"full.mcap", "full.bin", "full.csv", "full.jsonl", "full.pcd",
                                  "full.npy", "full.npz", "full.ply", "full.xyz", "full.carmen"}) {
     for (const std::string from : {"walk.mcap", "walk.bin"}) {
-      ::setrlimit(RLIMIT_FSIZE, &limit);
-      const outcome done = run({"convert", from, name});
-      ::setrlimit(RLIMIT_FSIZE, &before);
+      const outcome done = run_on_full_disk(3'000, {"convert", from, name});
       EXPECT_EQ(done.code, 10) << from << " to " << name << done.err;
       EXPECT_THAT(done.err, HasSubstr("File too large. Free some space"));
       EXPECT_FALSE(fs::exists(name)) << from << " to " << name;

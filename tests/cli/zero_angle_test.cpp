@@ -16,6 +16,7 @@ namespace {
 using cli::lines_of;
 using cli::outcome;
 using cli::run;
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
@@ -161,14 +162,14 @@ TEST_F(FewBytes, ANumberOfAnotherModel_IsReportedWithBoth) {
       {"record", "sim:?model=scl&model_id=4&ct_information=true&ct_crc=true&stray_before_zero=true",
        "-o", path("scl.mcap"), "-d", "2s"});
   ASSERT_EQ(made.code, 0) << made.err;
-  const std::string line = "the lidar states the number 4, and an SCL has 22";
-  EXPECT_THAT(made.err, HasSubstr(line));
-  EXPECT_THAT(run({"decode", path("scl.mcap")}).err, HasSubstr(line));
+  const auto line = AllOf(HasSubstr("reports the number 4"), HasSubstr("read as an SCL"));
+  EXPECT_THAT(made.err, line);
+  EXPECT_THAT(run({"decode", path("scl.mcap")}).err, line);
   ASSERT_EQ(run({"convert", path("scl.mcap"), file}).code, 0);
-  EXPECT_THAT(run({"decode", file, "--model", "scl"}).err, HasSubstr(line));
+  EXPECT_THAT(run({"decode", file, "--model", "scl"}).err, line);
   const outcome unnamed = run({"decode", file});
   EXPECT_THAT(unnamed.err, HasSubstr("read as S2 with intensity"));
-  EXPECT_THAT(unnamed.err, Not(HasSubstr("states the number")));
+  EXPECT_THAT(unnamed.err, Not(HasSubstr("reports the number")));
 }
 
 }  // namespace

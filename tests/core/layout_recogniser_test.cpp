@@ -95,7 +95,7 @@ byte_vector first_packets(std::string_view model, unsigned from, unsigned count)
 TEST(LayoutRecogniser, AtTheEnd_TheBestSizeDecides) {
   for (const reference::wire_format& how : reference::wire_formats) {
     for (const unsigned count : {1U, 2U, 3U}) {
-      for (const unsigned cut : {0U, 1U, 17U}) {  // bytes of the next packet
+      for (const int cut : {0, 1, 17}) {  // bytes of the next packet
         SCOPED_TRACE(how.model + " " + std::to_string(count) + " " + std::to_string(cut));
         byte_vector all = first_packets(how.model, 1, count);
         const byte_vector next = first_packets(how.model, 1 + count, 1);

@@ -56,6 +56,7 @@ const std::vector<option>& of_all() {
   static const std::vector<option> all{
       {"model", [](auto& of) { of.model = &g4_model; }},
       {"partial_scans", [](auto& of) { of.partial_scans = true; }},
+      {"zero_angle", [](auto& of) { of.zero_angle = zero_angle{.cdeg = 100}; }},
       {"batch", [](auto& of) { of.tuning.batch = 5ms; }},
       {"transport_delay", [](auto& of) { of.tuning.transport_delay = 1ms; }},
       {"device_wait", [](auto& of) { of.device_wait = 1ms; }},

@@ -122,6 +122,38 @@ TEST(Timeout, OfAReader_StatesWhatItDoes) {
   EXPECT_EQ(why.message().find("nplug"), std::string::npos) << why.message();
 }
 
+struct end_of_packets {
+  const char* model;
+  std::int64_t silence_ns;  ///< From the start to the first packet.
+  std::int64_t from_ns;     ///< From then on the bytes are those of another baud rate.
+};
+
+// A lidar whose line is damaged while it scans, or before its first packet, is neither silent nor without power.
+TEST(Timeout, OfAScanWhoseBytesAreNoPackets_StatesTheirNumber) {
+  for (const auto& [word, silence_ns, from_ns] : {end_of_packets{"g4", 0, 5 * second_ns},
+                                                  {"g4", 2 * second_ns, 2 * second_ns},
+                                                  {"t-mini", 2 * second_ns, 2 * second_ns},
+                                                  {"x2", 0, 5 * second_ns}}) {
+    sim::device_options device;
+    ASSERT_TRUE(sim::use_model(device, word));
+    device.silence_ns = silence_ns;
+    const sim::fault fault = sim::make_fault(sim::fault_kind::baud, from_ns);
+    virtual_bench bench(device, {&fault, 1});
+    bench.baud = device.baud;
+    auto lidar = open_virtual(bench, {.model = model_named(word)});
+    ASSERT_TRUE(lidar) << word << lidar.error().message();
+    ASSERT_TRUE(lidar->start());
+    auto found = lidar->next_scan(500ms);
+    while (bench.now_ns < 60 * second_ns && (found || !found.error().is_fatal()))
+      found = lidar->next_scan(500ms);
+    ASSERT_FALSE(found) << word;
+    const std::string text = found.error().message();
+    EXPECT_EQ(found.error(), problem::garbage) << text;
+    EXPECT_NE(text.find(" bytes "), std::string::npos) << text;
+    EXPECT_EQ(text.find("no byte"), std::string::npos) << text;
+  }
+}
+
 TEST(Timeout, OfACommandThatThePortDoesNotAccept_IsAboutThePort) {
   const error why(task::writing, problem::timeout, "/dev/ttyUSB0", 0, error_detail::not_sent);
   EXPECT_NE(why.message().find("did not accept"), std::string::npos);

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -120,6 +121,19 @@ TEST(PointCloud2, FieldsForProgramsThatFillAMessageThemselves) {
   EXPECT_EQ(cloud_point_size(*model_named("t-mini-pro")), 28U);
   EXPECT_EQ(cloud_fields(*model_named("t-mini-pro")).back().name, "intensity");
   EXPECT_EQ(cloud_fields(*model_named("t-mini-pro")).back().datatype, 7) << "FLOAT32";
+}
+
+// In a scan turned by a motion, or merged from several lidars, the earliest point may be anywhere; 0 is no time.
+TEST(PointCloud2, BeginsAtTheEarliestTime) {
+  std::array<point, 4> points{};
+  EXPECT_EQ(cloud_time_ns({}), 0);
+  EXPECT_EQ(cloud_time_ns(points), 0);
+  points[1].time_ns = 7'000'000'000;
+  EXPECT_EQ(cloud_time_ns(points), 7'000'000'000);
+  points[3].time_ns = 5'000'000'000;
+  EXPECT_EQ(cloud_time_ns(points), 5'000'000'000);
+  points[0].time_ns = -1;
+  EXPECT_EQ(cloud_time_ns(points), -1);
 }
 
 }  // namespace

@@ -68,6 +68,21 @@ TEST_F(HostileChunks, WithMessagesOfARecordedChannel_CostWorkByTheSizeOfTheFile)
   EXPECT_FALSE(chunks.next().records.empty());
 }
 
+// Each of them is a guess that fails, and would be looked for in 256 KiB behind it.
+TEST_F(HostileChunks, SmallOnesWithAWrongChecksum_AreReadFewTimes) {
+  const std::string small =
+      mcap_record(6, little_endian(0, 16) + little_endian(9, 8) + little_endian(1, 4) +
+                         little_endian(0, 4) + little_endian(9, 8) + mcap_record(5, {}));
+  for (const std::size_t between : {1U, 100U}) {
+    const std::string file = hostile_mcap(small + std::string(between, '\0'), 4000);
+    const auto source = std::make_shared<memory_source>(bytes_of_text(file));
+    mcap::chunk_source chunks(source);
+    EXPECT_TRUE(chunks.next().records.empty());
+    EXPECT_EQ(chunks.damage().bytes_skipped, 4000 * (small.size() + between)) << between;
+    EXPECT_LT(source->bytes_read(), 3 * file.size() + (std::uint64_t{2} << 20U)) << between;
+  }
+}
+
 // A summary that would read 1 TiB.
 TEST(HostileSummary, WithOverlappingGroups_IsReadOnce) {
   const std::string file = mcap_with_overlapping_groups();

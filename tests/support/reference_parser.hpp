@@ -94,8 +94,8 @@ struct packet_form {
     const int raw = in[low] + 256 * high;
     return raw % 2 == 1 && raw / 2 < 360 * 64;
   };
-  return in[0] == 0xAA && (k < 2 || in[1] == 0x55) &&
-         (k < 4 || in[3] <= most_samples) && angle_ok(4) && angle_ok(6);
+  return in[0] == 0xAA && (k < 2 || in[1] == 0x55) && (k < 4 || in[3] <= most_samples) &&
+         angle_ok(4) && angle_ok(6);
 }
 
 /// The checksum in the order of the protocol page: PH, FSA, the samples, CT with LSN, LSA. Of a sample

@@ -121,10 +121,11 @@ struct device_options {
   /// CT of the packets behind a zero packet has health, versions and numbers, as with one-way models.
   bool ct_information = false;
   std::int64_t time_packet_ns = 0;  ///< The interval of time packets; 0: none, as a G4.
-  bool empty_packets = false;  ///< A packet without samples before every zero packet, as of some X2.
-  bool stop_truncates = true;       ///< A stop truncates the packet that is being sent.
-  bool boot_text = true;            ///< ASCII after a restart and after power-on.
-  bool boot_information = true;     ///< Then the device information, without a query.
+  bool empty_packets =
+      false;  ///< A packet without samples before every zero packet, as of some X2.
+  bool stop_truncates = true;    ///< A stop truncates the packet that is being sent.
+  bool boot_text = true;         ///< ASCII after a restart and after power-on.
+  bool boot_information = true;  ///< Then the device information, without a query.
   std::int64_t boot_ns = 400'000'000;
 
   // Open questions of the protocol.

@@ -36,8 +36,8 @@ std::string_view problem_with(const device_options& options) noexcept {
            "must take "
            "0 to 60 s";
   }
-  if (options.acceleration_mhz_per_s < 100 || options.acceleration_mhz_per_s > 100'000'000) {
-    return "the motor must gain 0.1 to 100000 Hz a second";
+  if (options.acceleration_mhz_per_s < 1 || options.acceleration_mhz_per_s > 100'000'000) {
+    return "the motor must gain 0.001 to 100000 Hz a second";
   }
   if (options.highest_frequency_chz < options.scanner.scan_frequency_chz ||
       options.highest_frequency_chz > options.scanner.format.max_frequency_chz) {

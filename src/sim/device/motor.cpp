@@ -24,7 +24,7 @@ std::int64_t wave_ppm(std::int64_t at_ns, std::int64_t period_ns) noexcept {
 }  // namespace
 
 motor::motor(const device_options& options) noexcept
-    : acceleration_mhz_per_s_(options.acceleration_mhz_per_s),
+    : acceleration_mhz_per_s_(std::max(options.acceleration_mhz_per_s, 1U)),
       standstill_ns_(options.standstill_ns),
       period_ns_(options.motor_drift_period_ns),
       offset_ns_(
@@ -54,9 +54,10 @@ void motor::hold(constant_frequency constancy) noexcept {
 std::int64_t motor::undisturbed_mhz(std::int64_t now_ns) const noexcept {
   const std::int64_t target = target_mhz_;
   const std::int64_t rest_ns = from_mhz_ == 0 && target != 0 ? standstill_ns_ : 0;
-  // After 100 s it has reached its speed with any acceleration: this keeps the product small.
+  // Then it has gained 100 Hz, which is more than any speed: this keeps the product small.
+  const std::int64_t longest_ns = (100'000 / acceleration_mhz_per_s_ + 1) * second_ns;
   const std::int64_t moving_ns =
-      std::clamp<std::int64_t>(now_ns - since_ns_ - rest_ns, 0, 100 * second_ns);
+      std::clamp<std::int64_t>(now_ns - since_ns_ - rest_ns, 0, longest_ns);
   const std::int64_t gained = moving_ns / 1000 * acceleration_mhz_per_s_ / 1'000'000;
   return from_mhz_ < target ? std::min(from_mhz_ + gained, target)
                             : std::max(from_mhz_ - gained, target);

@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <utility>
@@ -62,6 +63,25 @@ std::vector<std::pair<float, float>> replayed(const std::string& path) {
   auto opened = lidar::open(std::move(*from));
   EXPECT_TRUE(opened) << opened.error().message();
   return opened ? five_scans(*opened) : std::vector<std::pair<float, float>>();
+}
+
+TEST(RecordedModel, ANumberThatItDoesNotHave_IsReportedByTheReplay) {
+  sim::device_options options;
+  ASSERT_TRUE(sim::use_model(options, "scl"));
+  options.ct_information = options.ct_crc = options.stray_before_zero = true;
+  for (const auto& [sent, times] : {std::pair{std::uint8_t{22}, 0}, {std::uint8_t{4}, 1}}) {
+    options.info.model = sent;
+    const temporary_path path;
+    static_cast<void>(live(*model_named("scl"), options, path.text()));
+    auto opened = lidar::open(path.text());
+    ASSERT_TRUE(opened) << opened.error().message();
+    static_cast<void>(five_scans(*opened));
+    int reported = 0;
+    while (const auto event = opened->next_event())
+      reported += event->what == lidar_event::kind::other_number ? 1 : 0;
+    EXPECT_EQ(reported, times) << int{sent};
+    EXPECT_EQ(opened->information().model, sent);
+  }
 }
 
 TEST(RecordedModel, GivesTheSamePoints) {

@@ -2,6 +2,7 @@
 // The numbers that lidars report of their model, and errors of those that report none.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cstdint>
@@ -80,12 +81,53 @@ TEST(ReportedNumber, NumberOfAOneWayLidar_IsRefusedOnlyIfItIsSurelyAnotherModel)
   }
 }
 
-// At 40 samples a packet: 3 kHz at 8 Hz are 11 packets a revolution, up to the month of the date; at 4 Hz 20.
+/// The lower four bits of the numbers of a one-way model, by the table of the manufacturer; the models of which they
+/// are.
+struct ct_numbers {
+  std::vector<std::uint8_t> own;
+  std::vector<const char*> words;
+};
+
+TEST(ReportedNumber, EachNumberThatAOneWayLidarCannotHave_IsReportedOrRefused) {
+  std::size_t tried = 0;
+  for (const auto& [own, words] :
+       {ct_numbers{{4, 6}, {"x2", "x2l", "x3", "x3-pro", "x4-pro"}},
+        ct_numbers{{4, 12}, {"s2", "s2-pro", "s2-intensity", "s2-pro-intensity"}},
+        ct_numbers{{6}, {"scl"}}, ct_numbers{{4}, {"tx8", "tx20"}}}) {
+    for (const char* const word : words) {
+      ++tried;
+      for (std::uint8_t sent = 1; sent <= 15; ++sent) {
+        sim::device_options options = options_of(*model_named(word));
+        options.info.model = sent;
+        options.ct_information = options.ct_crc = options.stray_before_zero = true;
+        options.scanner.samples_per_packet = 20;
+        bench on(*model_named(word), options);
+        auto lidar = on.open();
+        ASSERT_TRUE(lidar) << word << lidar.error().message();
+        ASSERT_TRUE(lidar->start());
+        auto scan = lidar->wait_scan(2000ms);
+        for (int i = 0; i < 5 && scan; ++i) scan = lidar->wait_scan(2000ms);
+        const bool is_own = std::find(own.begin(), own.end(), sent) != own.end();
+        const bool is_refused = !scan && scan.error() == problem::other_device;
+        EXPECT_TRUE(scan || is_refused) << word << " " << int{sent};
+        EXPECT_EQ(times_reported(*lidar) + (is_refused ? 1 : 0), is_own ? 0 : 1)
+            << word << " " << int{sent};
+      }
+    }
+  }
+  EXPECT_EQ(tried, static_cast<std::size_t>(std::count_if(
+                       models.begin(), models.end(),
+                       [](const model& of) { return of.link == link_kind::one_way; })));
+}
+
+// At 40 samples a packet: 3 kHz at 8 Hz are 11 packets a revolution, up to the month of the date; at 4 Hz, which not
+// every model can, 20.
 TEST(ReportedNumber, NumberOfAOneWayLidarWithFewPackets_IsKnown) {
   for (const model& which : models) {
     if (which.link != link_kind::one_way || which.ct_information == presence::no) continue;
     for (const std::uint16_t chz : std::to_array<std::uint16_t>({400, 500, 600, 700, 800})) {
       sim::device_options options = options_of(which);
+      if (chz < options.scanner.format.min_frequency_chz) continue;
       options.ct_information = options.ct_crc = options.stray_before_zero = true;
       options.condition = {health_status::error, 1};
       options.scanner.scan_frequency_chz = chz;

@@ -85,6 +85,7 @@ bool subject::is_same() {
   if (identified.empty()) return true;
   constexpr int tries = 5;
   for (int i = 0; i < tries && !link->is_over(); ++i) {
+    if (i > 0) link->stop_scan();  // the answer is lost between packets
     const raw_reply got = link->ask(command::device_info, 1'000 * ms);
     if (information_in(got.content())) return std::ranges::equal(got.content(), identified);
   }

@@ -25,9 +25,7 @@
 #include "read_loop.hpp"
 
 namespace g4_tool {
-namespace {
 
-/// The failure for an error of the file of a recording.
 failure file_failure(const g4lidar::error& why, const std::string& path, bool is_kept) {
   const int number = why.system_errno();
   if (why.code() == problem::bad_option) return {exit_code::usage, in_tool_words(why.message())};
@@ -41,6 +39,8 @@ failure file_failure(const g4lidar::error& why, const std::string& path, bool is
                   advice_on_writing(number),
                   is_full && is_kept ? " What was written before can be read." : "")};
 }
+
+namespace {
 
 /// One recording, from its beginning to its end.
 class recorder {
@@ -195,6 +195,7 @@ class recorder {
   [[nodiscard]] failure why_not_written(bool is_kept) {
     if (writer_) path_ = writer_->path();
     const bool has_several = job_.title.empty() && !path_.empty();
+    // NOLINTNEXTLINE(bugprone-unchecked-optional-access): there is one
     return file_failure(*file_error_, has_several ? path_ : title_, is_kept);
   }
 

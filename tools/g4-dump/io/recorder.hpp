@@ -6,6 +6,7 @@
 #include <string>
 
 #include "cli/common_options.hpp"
+#include "cli/exit_code.hpp"
 #include "g4lidar/recording/writer.hpp"
 #include "io/source.hpp"
 
@@ -41,6 +42,10 @@ struct recorded_result {
 /// Records until an end condition, a signal, or the end of the source. The file is always completed; there
 /// is none if the source cannot be opened. Throws a failure of the source or of the disk.
 recorded_result record(const recording_job& job);
+
+/// The failure for an error of the file of a recording. `is_kept`: what was written before remains.
+[[nodiscard]] failure file_failure(const g4lidar::error& why, const std::string& path,
+                                   bool is_kept);
 
 /// Logs the contents of the file and its digests.
 void report_recorded(const recorded_result& result, const std::string& path);

@@ -227,7 +227,7 @@ int accept(const acceptance_settings& given) {
   acceptance::run_options how = options_of(options);
   auto file = recording_writer::create(
       options.run.file, {.model = how.model, .overwrite = may_replace(), .scans = false});
-  if (!file) throw failure(file.error());
+  if (!file) throw file_failure(file.error(), options.run.file, false);
   auto observed = recorded(std::move(from), *file);
   if (!observed) throw failure(observed.error());
 
@@ -254,8 +254,8 @@ int accept(const acceptance_settings& given) {
   file->metadata("g4lidar.acceptance", words);
   const auto closed = file->close();
   static_cast<void>(cannot_write());
-  if (unwritten) throw failure(*unwritten);
-  if (!closed) throw failure(closed.error());
+  if (!unwritten && !closed) unwritten = closed.error();
+  if (unwritten) throw file_failure(*unwritten, options.run.file, file->counts().chunks > 0);
   if (!options.json) out.write(questions_of(*how.model, all));
   out.commit();
   logger::info(fmt::format("{} has all bytes and these results. Attach it to a report: {}\n",

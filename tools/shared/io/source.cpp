@@ -216,10 +216,28 @@ const g4lidar::model* model_of(const common_options& options,
   return found;
 }
 
+namespace {
+
+/// Throws a failure if the user has given an option that the source cannot use. What all sources get is left out: the
+/// speed 1 of programs that show a recording, and what happens at a loss.
+void refuse_options_of_others(const lidar_options& how) {
+  constexpr double as_recorded = 1.0;
+  lidar_options given;
+  given.device = how.device;
+  given.baud = how.baud;
+  given.raw_sample_rate_hz = how.raw_sample_rate_hz;
+  given.playback = how.playback;
+  if (given.playback.speed == as_recorded) given.playback.speed = lidar_options().playback.speed;
+  if (const auto wrong = problem_with_source(given)) throw failure(*wrong);
+}
+
+}  // namespace
+
 lidar_options options_for(const common_options& options, lidar_options how) {
   how.device = options.source;
   how.model = named_model(options);
   if (options.expected.baud != 0) how.baud = options.expected.baud;
+  refuse_options_of_others(how);
   how.zero_angle = options.expected.zero;
   how.reconnect = options.on_loss != loss_rule::exit;
   // A file that is missing is not waited for.
