@@ -81,10 +81,10 @@ class TestLaunch(unittest.TestCase):
         try:
             shown, _ = launched.communicate(timeout=support.PATIENCE)
         finally:
-            left = subprocess.run(["pgrep", "-g", str(launched.pid), "-a"], capture_output=True, text=True).stdout
+            left = support.processes_of(launched.pid)
             if left:
                 os.killpg(launched.pid, signal.SIGKILL)
-        self.assertEqual(left, "")
+        self.assertEqual(left, [])
         self.assertNotIn("process started", shown)
         return shown
 
