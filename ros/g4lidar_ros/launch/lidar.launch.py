@@ -52,7 +52,7 @@ def sections_in(tree, above=""):
     for key, value in tree.items() if isinstance(tree, dict) else ():
         name = above + "/" + str(key).strip("/")
         if isinstance(value, dict) and "ros__parameters" in value:
-            yield name, value["ros__parameters"] or ()
+            yield name, value["ros__parameters"]
         else:
             yield from sections_in(value, name)
 
@@ -64,7 +64,7 @@ def check_file(path, node):
     own = set()
     for name, values in sections:
         pattern = re.escape(name).replace(r"/\*\*", "(/[^/]+)*").replace(r"/\*", "/[^/]+")
-        if re.fullmatch(pattern, node):
+        if isinstance(values, dict) and re.fullmatch(pattern, node):
             own |= {str(each).split(".")[0] for each in values}
     foreign = own & {"port", "serial_port"}  # of ydlidar_ros2_driver, sllidar_ros2
     if not foreign and own & {*PARAMETERS, "use_sim_time", "qos_overrides", "diagnostic_updater"}:

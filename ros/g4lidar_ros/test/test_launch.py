@@ -150,7 +150,7 @@ class TestLaunch(unittest.TestCase):
                 self.assertIn(word, shown)
             if page not in words:
                 self.assertNotIn(page, shown)
-        for text in ("", "g4lidar: 7\n", "/**:\n  ros__parameters: {gain: 1}\n"):
+        for text in ("", "g4lidar: 7\n", "g4lidar: {ros__parameters: 7}\n", "/**:\n  ros__parameters: {gain: 1}\n"):
             self.assertIn("nothing for the node /g4lidar", self.refused("lidar.launch.xml", "sim:=true", self.parameters(text)))
         vendor = self.parameters("ydlidar_ros2_driver_node:" + values + "}")
         for which in ("params_file:=", "rear_params_file:="):
