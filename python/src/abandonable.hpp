@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <future>
 #include <memory>
+#include <optional>
 #include <span>
 #include <thread>
 #include <utility>
@@ -24,11 +25,17 @@ namespace g4lidar::python {
 enum class progress : std::uint8_t { running, abandoned, done };
 using shared_progress = std::shared_ptr<std::atomic<progress>>;
 
-/// The result of `work()` in a thread of its own, which owns what it uses, and uses nothing of Python. If the handler of
-/// a signal raises, that is raised at once: `of_work` becomes abandoned, and the thread ends by itself. Needs the GIL.
+/// The result of `work()` in a thread of its own, which owns what it uses, and uses nothing of Python; all of that is
+/// gone when there is a result. If the handler of a signal raises, that is raised at once: `of_work` becomes abandoned,
+/// and the thread ends by itself; it is given a moment for this. Needs the GIL.
 template <class Work>
 auto in_background(Work work, const shared_progress& of_work) {
-  std::packaged_task<decltype(work())()> task(std::move(work));
+  constexpr std::chrono::milliseconds moment(100);
+  std::packaged_task<decltype(work())()> task([owned = std::optional(std::move(work))]() mutable {
+    auto made = (*owned)();
+    owned.reset();
+    return made;
+  });
   auto found = task.get_future();
   {
     const without_signals masked;
@@ -41,6 +48,10 @@ auto in_background(Work work, const shared_progress& of_work) {
     }
     if (PyErr_CheckSignals() == 0) continue;
     *of_work = progress::abandoned;
+    {
+      const without_gil free;
+      static_cast<void>(found.wait_for(moment));
+    }
     throw nanobind::python_error();
   }
   *of_work = progress::done;

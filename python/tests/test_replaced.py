@@ -1,8 +1,13 @@
 # SPDX-License-Identifier: MIT
 """What `record` of open() replaces, and what it leaves."""
+import os
+import pty
+import select
+import signal
 from pathlib import Path
 
 import pytest
+from conftest import PATIENCE, start_program
 
 import g4lidar
 from g4lidar import errors
@@ -29,7 +34,26 @@ def test_the_source_is_not_replaced(tmp_path: Path) -> None:
 def test_an_older_file_stays_without_a_lidar(tmp_path: Path) -> None:
     old = tmp_path / "old.mcap"
     old.write_text("dear")
-    with pytest.raises(g4lidar.Error):
-        g4lidar.open(str(tmp_path / "nosuch"), record=old, overwrite=True)
+    for _ in range(50):  # a thread opens the lidar, which may end later
+        with pytest.raises(g4lidar.Error) as failed:
+            g4lidar.open(str(tmp_path / "nosuch"), record=old, overwrite=True)
+        assert [each.name for each in tmp_path.iterdir()] == ["old.mcap"], failed
     assert old.read_text() == "dear"
+
+
+def test_an_older_file_stays_after_a_signal(tmp_path: Path) -> None:
+    old = tmp_path / "old.mcap"
+    old.write_text("dear")
+    silent, port = pty.openpty()
+    try:
+        program = start_program("g4lidar.open(sys.argv[1], record=sys.argv[2], overwrite=True)", os.ttyname(port), str(old))
+        assert select.select([silent], [], [], PATIENCE)[0], "it asks nothing"
+        assert len(list(tmp_path.iterdir())) == 2
+        program.send_signal(signal.SIGINT)
+        _, err = program.communicate(timeout=PATIENCE)
+    finally:
+        os.close(silent)
+        os.close(port)
+    assert err.splitlines()[-1] == "KeyboardInterrupt"
     assert [each.name for each in tmp_path.iterdir()] == ["old.mcap"]
+    assert old.read_text() == "dear"

@@ -20,8 +20,10 @@ using g4_tool::full_name;
 using g4_tool::named_source;
 using g4_tool::ros2_options;
 using g4_tool::without_ros_arguments;
+using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 TEST(Names, AreInTheNamespaceUnlessTheyBeginWithASlash) {
   EXPECT_EQ(full_name("", "scan"), "/scan");
@@ -270,6 +272,16 @@ TEST_F(ParameterFile, ThatCannotBeUsedIsNamed) {
               HasSubstr("needs names"));
   EXPECT_THAT(read(""), ElementsAre());
   EXPECT_THAT(read("/**:\n  ros__parameters:\n"), ElementsAre());
+}
+
+TEST_F(ParameterFile, ForOtherNodesOnlyIsRefused) {
+  const std::string of_another = "ydlidar_ros2_driver_node:\n  ros__parameters: {port: /dev/x}\n";
+  EXPECT_THAT(refusal_of([&] { read(of_another); }),
+              AllOf(HasSubstr("for the node /g4lidar, but for /ydlidar_ros2_driver_node"),
+                    HasSubstr("docs/migrating.md"), Not(HasSubstr("\n"))));
+  const std::string of_this = "g4lidar:\n  ros__parameters: {grid: 90}\n";
+  EXPECT_NE(refusal_of([&] { read(of_this, {"-r", "__ns:=/robot1"}); }), "");
+  EXPECT_THAT(read(of_another + of_this), ElementsAre("--grid", "90"));
 }
 
 TEST_F(ParameterFile, ThatContainsItselfIsRefused) {

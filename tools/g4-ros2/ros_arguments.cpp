@@ -125,28 +125,49 @@ void set_parameter(const std::string& name, const YAML::Node& value, const optio
   }
 }
 
-/// Reads the sections of a file of parameters that apply to all nodes or to this one. At most `left` sections in all:
-/// by the aliases of YAML a section may contain itself, or others many times.
+/// What was found in a file of parameters.
+struct found_sections {
+  int left = 1000;  // by the aliases of YAML a section may contain itself, or others many times
+  bool has_ours = false;
+  std::string other{};  // another node
+};
+
+/// Reads the sections of a file of parameters that apply to all nodes or to this one.
 void read_sections(const YAML::Node& sections, const std::string& above, const node_names& names,
-                   const option_rows& rows, parameter_words& out, int& left) {
+                   const option_rows& rows, parameter_words& out, found_sections& found) {
   for (const auto& section : sections) {
-    if (--left < 0) throw bad_value("--ros-args: a file of parameters has too many sections");
+    if (--found.left < 0) throw bad_value("--ros-args: a file of parameters has too many sections");
     const auto key = section.first.as<std::string>();
     std::string name = above;
     name.append(key.starts_with('/') ? "" : "/").append(key);
     if (!section.second.IsMap()) throw bad_value(in_quotes(name) + " has no ros__parameters");
     const YAML::Node parameters = section.second["ros__parameters"];
     if (!parameters) {
-      read_sections(section.second, name, names, rows, out, left);
+      read_sections(section.second, name, names, rows, out, found);
     } else if (name == "/**" || name == "/*" || name == full_name(names.name_space, names.node)) {
       if (parameters.IsSequence() || parameters.IsScalar()) {
         throw bad_value(in_quotes(name) + ": ros__parameters needs names and values");
       }
+      found.has_ours = true;
       for (const auto& each : parameters) {
         set_parameter(each.first.as<std::string>(), each.second, rows, out);
       }
+    } else {
+      found.other = name;
     }
   }
+}
+
+/// Reads a file of parameters. One that has only those of other nodes would be ignored without a word.
+void read_file(const std::string& path, const node_names& names, const option_rows& rows,
+               parameter_words& out) {
+  found_sections found;
+  read_sections(YAML::LoadFile(path), "", names, rows, out, found);
+  if (found.has_ours || found.other.empty()) return;
+  throw bad_value(
+      fmt::format("--ros-args: {} has no parameters for the node {}, but for {}; docs/migrating.md "
+                  "has the options for the parameters of other drivers",
+                  in_quotes(path), full_name(names.name_space, names.node), found.other));
 }
 
 /// Calls `read`. Errors of the YAML of `what` become a bad_value.
@@ -192,9 +213,7 @@ words without_ros_arguments(const words& all, const option_rows& rows) {
     if (is_enclave) ignored(fmt::format("{} {}", word, value), "there is no security");
     if (!is_parameter && !is_file) continue;
     with_yaml(value, [&] {
-      int sections = 1000;
-      if (is_file)
-        return read_sections(YAML::LoadFile(value), "", names, rows, parameters, sections);
+      if (is_file) return read_file(value, names, rows, parameters);
       const auto [name, text] = assignment(value);
       set_parameter(name, YAML::Load(text), rows, parameters);
     });

@@ -12,6 +12,7 @@ A launch file that includes it twice puts each into a GroupAction, as arguments 
 import os
 import re
 
+import yaml
 from ament_index_python.packages import PackageNotFoundError, get_package_share_directory
 from launch import LaunchDescription
 from launch.actions import DeclareLaunchArgument, OpaqueFunction
@@ -19,6 +20,7 @@ from launch.substitutions import LaunchConfiguration
 from launch_ros.actions import LoadComposableNodes, Node
 from launch_ros.descriptions import ComposableNode
 from launch_ros.parameter_descriptions import ParameterValue
+from launch_ros.utilities import make_namespace_absolute, prefix_namespace
 
 SHARE = get_package_share_directory("g4lidar_ros")
 DEFAULTS = os.path.join(SHARE, "config", "lidar.yaml")
@@ -45,6 +47,35 @@ def given_parameters(context):
     return made
 
 
+def sections_in(tree, above=""):
+    """The names of the nodes that a file of parameters is for, which may have wildcards, and the parameters."""
+    for key, value in tree.items() if isinstance(tree, dict) else ():
+        name = above + "/" + str(key).strip("/")
+        if isinstance(value, dict) and "ros__parameters" in value:
+            yield name, value["ros__parameters"]
+        else:
+            yield from sections_in(value, name)
+
+
+def check_file(path, node):
+    """Refuses a file that has nothing for the node, which would be ignored without a word, or that is another driver's."""
+    with open(path) as file:
+        sections = list(sections_in(yaml.safe_load(file)))
+    own = set()
+    for name, values in sections:
+        pattern = re.escape(name).replace(r"/\*\*", "(/[^/]+)*").replace(r"/\*", "/[^/]+")
+        if isinstance(values, dict) and re.fullmatch(pattern, node):
+            own |= {str(each).split(".")[0] for each in values}
+    foreign = own & {"port", "serial_port"}  # of ydlidar_ros2_driver, sllidar_ros2
+    if not foreign and own & {*PARAMETERS, "use_sim_time", "qos_overrides", "diagnostic_updater"}:
+        return
+    what = f"has the parameter {min(foreign)} of another driver" if foreign else \
+        f"has nothing for the node {node}, but for {', '.join(dict(sections)) or 'none'}"
+    if foreign or re.search("ydlidar|sllidar", what):
+        what += ": docs/migrating.md has the names that the parameters of other drivers have here"
+    raise RuntimeError(f"params_file: {path} {what}")
+
+
 def lidar_actions(context):
     container = LaunchConfiguration("container").perform(context)
     node = {
@@ -53,6 +84,8 @@ def lidar_actions(context):
         "namespace": LaunchConfiguration("namespace").perform(context),
         "parameters": [LaunchConfiguration("params_file").perform(context), given_parameters(context)],
     }
+    space = prefix_namespace(context.launch_configurations.get("ros_namespace"), node["namespace"])
+    check_file(node["parameters"][0], make_namespace_absolute(space or "").rstrip("/") + "/" + node["name"])
     if not container:
         return [Node(executable="lidar_node", output="screen", **node)]
     component = ComposableNode(plugin="g4lidar_ros::LidarNode", extra_arguments=[{"use_intra_process_comms": True}], **node)
@@ -84,6 +117,6 @@ def generate_launch_description():
         DeclareLaunchArgument("params_file", default_value=DEFAULTS,
                               description="file of parameters; arguments have precedence"),
         *parameters,
-        OpaqueFunction(function=rviz_actions),
-        OpaqueFunction(function=lidar_actions),
+        # Nothing is started before all is checked: it would go on for ever.
+        OpaqueFunction(function=lambda context: rviz_actions(context) + lidar_actions(context)),
     ])

@@ -27,6 +27,7 @@ SHARE = get_package_share_directory("g4lidar_ros")
 def check(context):
     if context.launch_configurations.get("order") == "time":
         raise RuntimeError("order:=time is not for slam_toolbox, which would make a wrong map: use order:=angle")
+    get_package_share_directory("slam_toolbox")  # before the lidar starts, which would go on if that fails
 
 
 def driven(context, node):

@@ -37,7 +37,8 @@ def lidars(context):
     # not end by Ctrl-C in Humble.
     container = ComposableNodeContainer(package="rclcpp_components", executable="component_container_mt",
                                         name="lidars", namespace="", composable_node_descriptions=[])
-    return [container, lidar(context, "front", "sim:?seed=1"), lidar(context, "rear", "sim:?seed=2")]
+    # It is last: one that was just started would go on for ever if an argument is refused.
+    return [lidar(context, "front", "sim:?seed=1"), lidar(context, "rear", "sim:?seed=2"), container]
 
 
 def generate_launch_description():

@@ -91,7 +91,8 @@ LidarNode::CallbackReturn LidarNode::on_configure(const rclcpp_lifecycle::State&
     if (const auto started = session_->start(); !started)
       throw std::runtime_error(started.error().message());
   } catch (const std::exception& wrong) {
-    RCLCPP_ERROR(get_logger(), "not configured: %s", wrong.what());
+    if (get_node_base_interface()->get_context()->is_valid())  // else the program ends
+      RCLCPP_ERROR(get_logger(), "not configured: %s", wrong.what());
     return CallbackReturn::ERROR;
   }
   diagnostics_->follow(session_);

@@ -6,6 +6,7 @@
 #include <exception>
 #include <future>
 #include <stdexcept>
+#include <string_view>
 #include <utility>
 #include <variant>
 
@@ -156,6 +157,17 @@ void lidar_session::filter(std::vector<g4lidar::named_value> filters) {
   reader_.ask([this, what = std::move(filters)](g4lidar::lidar* /*lidar*/) {
     guard([&] { static_cast<void>(parameters_.change(nullptr, what)); });
   });
+}
+
+std::vector<g4lidar::stage_report> lidar_session::stages() const {
+  g4lidar::filter_settings wanted = first_filters();
+  for (const std::string_view name : {"fov", "ignore"}) {
+    const auto known = parameters_.value(*g4lidar::find_parameter(name));
+    if (const auto* const text = std::get_if<std::string>(&known))
+      static_cast<void>(g4lidar::set_filter(wanted, name, *text));
+  }
+  wanted.filter.ignored_sectors = wanted.ignored;
+  return diagnosis_.stages(wanted.filter);
 }
 
 void lidar_session::restart_file() {

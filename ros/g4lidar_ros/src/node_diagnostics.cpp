@@ -64,7 +64,7 @@ void node_diagnostics::report_state(wrapper& status) {
 
 void node_diagnostics::report_stage(g4lidar::diagnostic_stage which, wrapper& status) {
   if (!session_) return status.summary(wrapper::OK, "unconfigured");
-  const auto stages = session_->diagnosis().stages();
+  const auto stages = session_->stages();
   const auto at = std::ranges::find(stages, which, &g4lidar::stage_report::stage);
   if (at == stages.end()) return status.summary(wrapper::OK, "ok");
   fill(status, g4lidar::status_of(*at, ""));

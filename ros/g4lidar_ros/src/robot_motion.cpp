@@ -45,7 +45,9 @@ robot_motion::robot_motion(rclcpp_lifecycle::LifecycleNode& node, lidar_topics& 
     : node_(node), topics_(topics), options_(options) {
   // What cannot be read is reported when the source is opened as a lidar.
   if (g4lidar::kind_of_source(source) == g4lidar::source_kind::recording)
-    static_cast<void>(feed_.load_recording(g4lidar::path_of_source(source)));
+    static_cast<void>(feed_.load_recording(
+        g4lidar::path_of_source(source),
+        [of = node.get_node_base_interface()->get_context()] { return !of->is_valid(); }));
   has_odometry_ = feed_.is_known() || g4lidar::has_simulated_robot(source);
   if (has_odometry_) {
     if (!topics.odometry)

@@ -64,6 +64,20 @@ def waited_for_processor(pid):
     return waited_ns * 1e-9
 
 
+def processes_of(group):
+    """The command lines of the processes of a group that have not ended."""
+    found = []
+    for path in glob.glob("/proc/[0-9]*"):
+        try:
+            with open(path + "/cmdline") as file:
+                words = file.read().split("\0")
+            if words != [""] and os.getpgid(int(path[6:])) == group:
+                found.append(words)
+        except OSError:  # it has ended
+            pass
+    return found
+
+
 def interrupted(process):
     """Sends SIGINT to a process. Returns how long it took to end, seconds, and whether other programs delayed it, or this
     test: then the time does not describe the process."""

@@ -5,6 +5,7 @@ import os
 import pty
 import sys
 import tempfile
+import time
 import unittest
 
 import launch
@@ -83,10 +84,16 @@ class TestManager(unittest.TestCase):
                              ["configuring", "inactive", "activating", "active"])
 
     def test_configure_does_not_wait_for_the_lidar(self):
-        # Before, it waited for 10 s, and failed.
-        self.change("silent", *UP)
-        self.assertEqual(self.state("silent"), State.PRIMARY_STATE_ACTIVE)
-        self.change("silent", Transition.TRANSITION_DEACTIVATE, Transition.TRANSITION_CLEANUP)
+        times = []
+        for _ in range(3):  # a busy machine may delay some
+            begin = time.monotonic()
+            self.change("silent", UP[0])
+            times.append(time.monotonic() - begin)
+            self.change("silent", UP[1])
+            self.assertEqual(self.state("silent"), State.PRIMARY_STATE_ACTIVE)
+            self.change("silent", Transition.TRANSITION_DEACTIVATE, Transition.TRANSITION_CLEANUP)
+        # Before, it waited for 10 s, and failed. An idle machine needs less than 0.1 s.
+        self.assertLess(min(times), 2.0)
 
     def test_without_a_lidar_it_gives_up_when_that_is_wanted(self):
         for transitions in (UP[:1], UP):  # while it is inactive, and while it is active

@@ -269,3 +269,45 @@ class TestTypes(ParameterTest):
         self.assertTrue(support.wait_for(lambda: abs(kept() - 0.25) < 0.02), kept())
         self.assertTrue(self.set("ignore", double_array_value=[-45.0, 0.0]).successful)
         self.assertTrue(support.wait_for(lambda: abs(kept() - 0.125) < 0.02), kept())
+
+
+class TestBlind(ParameterTest):
+    def wait_for_sector(self, expected):
+        """The directions from which nothing returns, as /diagnostics has them, whole degrees; none: ()."""
+        def found():
+            all_of_it = [{pair.key: pair.value for pair in each.values} for message in list(self.messages)
+                         for each in message.status if each.name == "/blind/g4lidar: returns"]
+            if not all_of_it or "samples" not in all_of_it[-1]:
+                return None
+            values = all_of_it[-1]
+            return tuple(int(values[key]) for key in ("nothing_from_deg", "nothing_to_deg") if key in values)
+
+        def is_expected(sector):
+            return sector is not None and len(sector) == len(expected) and all(
+                abs(a - b) <= 4 for a, b in zip(sector, expected))
+        del self.messages[:]
+        self.assertTrue(support.wait_for(lambda: is_expected(found())), (found(), expected))
+
+    def test_directions_that_are_left_out_are_not_reported(self):
+        # No wall behind the lidar: their ends are at 117 and -117 degrees.
+        world = os.path.join(DIRECTORY, "open.txt")
+        with open(world, "w") as file:
+            file.write("wall 2 -2 2 2\nwall -1 2 2 2\nwall -1 -2 2 -2\nlidar 0 0 180\n")
+        self.messages = self.watcher.collect(DiagnosticArray, "/diagnostics")
+        self.start("blind", parameter_file({"source": f"'sim:?world={world}'"}))
+        self.go(*UP)
+        blind = (117, 243)
+        self.wait_for_sector(blind)
+        self.assertTrue(self.set("ignore", integer_array_value=[110, 250]).successful)
+        self.wait_for_sector(())
+        self.go(*DOWN, *UP)  # as from a file
+        self.wait_for_sector(())
+        self.assertTrue(self.set("ignore", string_value="off").successful)
+        self.wait_for_sector(blind)
+        self.assertTrue(self.set("fov", string_value="-100:100").successful)
+        self.wait_for_sector(())
+        self.assertTrue(self.set("fov", string_value="").successful)
+        self.wait_for_sector(blind)
+        for name, angle in (("angle_min", -100), ("angle_max", 100)):
+            self.assertTrue(self.set(name, integer_value=angle).successful)
+        self.wait_for_sector(())

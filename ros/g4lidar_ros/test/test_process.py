@@ -148,6 +148,25 @@ class TestProcess(unittest.TestCase):
             return nodes[-1]
         self.ends_within_2_s(start, lambda: self.assertNotIn("[ERROR]", nodes[-1].stderr.read()))
 
+    def test_ends_while_a_long_file_is_read(self):
+        with tempfile.NamedTemporaryFile(suffix=".mcap") as file:
+            file.write(b"\x89MCAP0\r\n")
+            file.truncate(1 << 40)  # zeros, which take no place
+            nodes = []
+
+            def bytes_read():
+                with open(f"/proc/{nodes[-1].pid}/io") as counts:
+                    return int(counts.read().split()[1])
+
+            def start():
+                nodes.append(subprocess.Popen([NODE, "--ros-args", "-p", f"source:={file.name}", "-p", "autostart:=true"],
+                                              stderr=subprocess.PIPE, text=True))
+                self.addCleanup(nodes[-1].stderr.close)
+                self.assertTrue(support.wait_for(lambda: bytes_read() > 1 << 27))
+                return nodes[-1]
+            # ROS itself reports that it cannot publish the transition any more.
+            self.ends_within_2_s(start, lambda: self.assertNotIn("not configured", nodes[-1].stderr.read()))
+
     def fails(self, arguments, words):
         """The node ends with exit code 1, and its last words contain these."""
         done = subprocess.run([NODE, "--ros-args", *arguments], capture_output=True, text=True, timeout=support.PATIENCE)
