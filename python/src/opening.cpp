@@ -120,12 +120,14 @@ live_lidar* open_by_keywords(
     double transport_delay, double speed, bool loop, double begin, std::optional<double> end,
     std::optional<std::uint32_t> raw_sample_rate_hz, const std::optional<std::string>& model,
     std::optional<double> zero_angle, const std::optional<path_text>& record, bool overwrite,
-    double device_wait) {
+    double device_wait, bool listen_only, bool insist_on_model) {
   lidar_options options;
   options.model = model_of(model);
   options.baud = baud;
   for (const answer& value : values_of(wanted...)) set_option(options, value);
   options.reconnect = reconnect;
+  options.listen_only = listen_only;
+  options.insist_on_model = insist_on_model;
   options.partial_scans = partial_scans;
   options.tuning.answer_time = in_milliseconds(answer_time);
   options.tuning.stall_time = in_milliseconds(stall_time);
@@ -235,7 +237,8 @@ void bind_open(nb::module_& module, keyword_types<Wanted...>, std::index_sequenc
       "transport_delay"_a = seconds(usual.tuning.transport_delay), "speed"_a = 0.0,
       "loop"_a = false, "begin"_a = 0.0, "end"_a = nb::none(), "raw_sample_rate_hz"_a = nb::none(),
       "model"_a = nb::none(), "zero_angle"_a = nb::none(), "record"_a = nb::none(),
-      "overwrite"_a = false, "device_wait"_a = 0.0,
+      "overwrite"_a = false, "device_wait"_a = 0.0, "listen_only"_a = false,
+      "insist_on_model"_a = false,
       "Opens a lidar and queries its identity; a device that is scanning is stopped first. "
       "`device`: '' for the only lidar; "
       "a path; 'serial:2021101000070073' (the number of the lidar); 'usb:1-1.4'; 'tcp:host:port'; "
@@ -261,7 +264,9 @@ void bind_open(nb::module_& module, keyword_types<Wanted...>, std::index_sequenc
       "the port finds, a recording or a Simulator states, or raw bytes show. `zero_angle`: what is "
       "added to each angle, in degrees (-360 to 360): instead of the answer to command 93, which "
       "the bytes may not have. `record`: the MCAP file to which the lidar is recorded; an existing "
-      "file only with `overwrite`, and never the file that is read.\n\n"
+      "file only with `overwrite`, and never the file that is read. `listen_only`: not a byte is "
+      "sent; settings and requests are refused. `insist_on_model`: `model` is right, whatever "
+      "number the lidar reports.\n\n"
       "Takes about 0.06 s with a healthy device, at most 15 s. Raises an Error.");
 }
 

@@ -189,3 +189,23 @@ def test_the_offset_of_zero(tmp_path: Path) -> None:
         g4lidar.decode(data, zero_angle=1.0)
     with pytest.raises(errors.BadOption):
         g4lidar.decode(data, model="tg15", zero_angle=361.0)
+
+
+def test_a_lidar_is_listened_to_without_a_word() -> None:
+    simulator = g4lidar.Simulator(model="t-mini-plus", faults=["scanning"])
+    with g4lidar.open(simulator, listen_only=True) as lidar:
+        lidar.start()
+        for scan, _ in zip(lidar.scans(), range(3)):
+            assert len(scan) > 0
+        with pytest.raises(errors.NotSupported):
+            lidar.set(frequency=8.0)
+        known = lidar.recognition
+    assert known["model"] == "t-mini-plus" and known["known_by"] == "recording"
+    assert known["contradictions"] == ""
+
+
+def test_what_contradicts_the_model_is_said() -> None:
+    with g4lidar.open("sim:?model=t-mini-plus&model_id=153") as lidar:
+        known = lidar.recognition
+    assert known["number"] == 153
+    assert "153, which no known model has" in str(known["contradictions"])
