@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <utility>
 #include <variant>
+#include <vector>
 
+#include "discovery/model_choice.hpp"
 #include "g4lidar/detail/saturating.hpp"
 
 namespace g4lidar {
@@ -31,6 +33,7 @@ void running_scan::end() {
 // What was measured before is of another scan.
 void running_scan::enter(phase next) {
   phase_ = next;
+  if (next == phase::starts) sizes_.emplace(sample_size(which_->samples.layout));
   boots_ = splitter_.boots();
   may_have_booted_ = false;
   silence_ns_ = 0;
@@ -83,7 +86,24 @@ void running_scan::received(const reading& what, bytes data) {
   silence_ns_ = std::max(silence_ns_, std::exchange(known.silence_ns, 0));
   if (phase_ == phase::runs) measured_.take(known);
   splitter_.take(data, what.arrival_ns, to_);
+  if (sizes_ && phase_ != phase::rests) follow_samples(data);
   look();
+}
+
+void running_scan::follow_samples(bytes data) {
+  sizes_->take(data);
+  const std::size_t size = sizes_->other();
+  if (sizes_->is_settled()) sizes_.reset();
+  const auto fitting =
+      size == 0 ? std::vector<const model*>()
+                : models_that_fit({.sample_bytes = size,
+                                   .answers = which_->link == link_kind::two_way ? presence::yes
+                                                                                 : presence::no});
+  if (fitting.empty()) return;
+  read_as(*fitting.front());
+  splitter_ = event_splitter(which_->samples);
+  garbage_ = 0;
+  enter(phase::starts);
 }
 
 void running_scan::take(const observed_event& found) {

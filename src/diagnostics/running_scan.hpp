@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "driver/sample_size_watch.hpp"
 #include "g4lidar/core/command.hpp"
 #include "g4lidar/detail/saturating.hpp"
 #include "g4lidar/diagnostics/running_diagnosis.hpp"
@@ -78,6 +79,8 @@ class running_scan {
   void take(const response_view& response);
   void enter(phase next);
   void look();
+  /// The driver reads the bytes as its samples show, whatever model was stated.
+  void follow_samples(bytes data);
   /// Whether packets arrive, so that a start command is a keep-alive.
   [[nodiscard]] bool is_current(std::int64_t now_ns) const noexcept;
 
@@ -89,7 +92,8 @@ class running_scan {
   event_splitter splitter_;
   observer to_{.event = [this](const observed_event& found) { take(found); }};
   stream_statistics measured_{g4_model, true};
-  stream_tally earlier_;  // of the stretch before
+  stream_tally earlier_;                    // of the stretch before
+  std::optional<sample_size_watch> sizes_;  // from a start until they are as expected
   device_snapshot known_;
   std::uint64_t boots_ = 0;       // boot texts that were handled
   bool may_have_booted_ = false;  // since the last packet, or it is one of damaged bytes

@@ -25,6 +25,7 @@ class wrapping_connector final : public forwarding_connector {
   [[nodiscard]] connector_traits traits() const noexcept override {
     connector_traits known = forwarding_connector::traits();
     known.recognised.model = which_;
+    known.recognised.by = which_ != nullptr ? known_by::number : known_by::nothing;
     return known;
   }
   [[nodiscard]] result<std::unique_ptr<transport>> connect() noexcept override {
@@ -45,6 +46,7 @@ struct use {
   wrapper wrap{};
   lidar_options options{};
   running_diagnosis_options judged{};
+  const model* numbered = nullptr;  ///< Recognised by its number, not named.
   std::int64_t seconds = 20;
   bool takes_points = false;  // next_points(), not next_scan()
   /// Called once a second with the time.
@@ -87,7 +89,8 @@ inline seen watch(const use& how) {
   sim::virtual_clock clock;
   running_diagnosis judge(how.judged);
   auto from = std::make_unique<wrapping_connector>(
-      std::make_unique<sim::virtual_connector>(simulated, clock), how.wrap, how.options.model);
+      std::make_unique<sim::virtual_connector>(simulated, clock), how.wrap,
+      how.numbered != nullptr ? how.numbered : how.options.model);
   auto opened = lidar::open(judge.observe(std::move(from)), how.options);
   seen all;
   if (!opened) {

@@ -62,6 +62,16 @@ TEST(RunningHealthy, HasNoDiagnosis_AndReportsItsMeasurements) {
   }
 }
 
+// The driver reads it by its samples, and so does the diagnosis: the number is all that is wrong.
+TEST(RunningHealthy, WithSamplesThatContradictItsNumber_HasNoOtherDiagnosis) {
+  use how;
+  ASSERT_TRUE(sim::use_model(how.device, "t-mini-plus-sh"));
+  how.numbered = model_named("t-mini-plus");
+  how.device.info.model = how.numbered->ids[0];
+  const seen found = watch(how);
+  EXPECT_EQ(found.diagnoses(), "other_number") << found;
+}
+
 TEST(RunningHealthy, OtherModels_HaveNoDiagnosis) {
   for (const std::string_view word :
        {"x4", "x2", "x4-pro", "t-mini-pro", "t-mini-plus-sh", "g2", "g6", "tg30", "s4b", "scl"}) {
