@@ -21,8 +21,6 @@ command_source::command_source(const common_options& options, task doing)
     : source_((refuse_files(options, doing), options)) {
   while (const auto event = lidar().next_event()) {
     was_scanning_ = was_scanning_ || event->what == lidar_event::kind::found_scanning;
-    if (event->what == lidar_event::kind::other_number)
-      report_contradictions(lidar().recognition());
   }
   if (was_scanning_)
     logger::info(fmt::format("{}: was scanning and has been stopped\n", lidar().name()));

@@ -46,6 +46,7 @@ exit_code health(const common_options& options) {
   const bool is_one_way = source.candidates().front()->link == g4lidar::link_kind::one_way;
   const auto given = is_one_way ? reported_health(source.lidar())
                                 : std::optional(value_of(source.lidar().ask(requests::health())));
+  report_contradictions(source.lidar().recognition());
   nlohmann::ordered_json all{
       {"source", source.lidar().name()}, {"status", nullptr}, {"error_code", nullptr}};
   if (given) {

@@ -66,6 +66,7 @@ device_facts facts_of_device(const common_options& options) {
   facts.candidates.assign(source.candidates().begin(), source.candidates().end());
   facts.known_by = name_of(lidar.recognition().by);
   facts.contradictions = contradictions_of(lidar.recognition());
+  report_contradictions(lidar.recognition());
   for (std::size_t i = 0; i < facts.settings.size(); ++i) {
     facts.settings[i] = read_setting(lidar, all_settings()[i]);
   }
