@@ -8,6 +8,7 @@
 
 #include "core/number_text.hpp"
 #include "discovery/model_choice.hpp"
+#include "g4lidar/setting_table.hpp"
 #include "stages.hpp"
 
 namespace g4lidar {
@@ -36,6 +37,18 @@ bool is_host_busy(const stream_statistics& measured) noexcept {
   return measured.tally().arrivals.longest_host_pause_ns() >= arrival_statistics::stall_ns;
 }
 
+/// Whether the rate is not that of the manual, but devices of the model have it. Reports that.
+bool is_rate_of_owners(stage_report& rate, double rate_hz, const model& wanted) {
+  const double manual_hz = wanted.rates.nominal_hz;
+  const bool is_near = std::abs(rate_hz - manual_hz) <= other_model_tolerance * manual_hz;
+  if (is_near || !is_seen_rate(wanted, rate_hz)) return false;
+  rate.remark = std::to_string(std::lround(rate_hz)) + " samples per second, " +
+                std::to_string(wanted.rates.nominal_hz) + " by the manual: owners of " +
+                one_of(wanted) + " see " + std::to_string(wanted.rates.least_seen_hz) + " to " +
+                std::to_string(wanted.rates.most_seen_hz) + ".";
+  return true;
+}
+
 /// Bytes without device information: a speed that no lidar like `wanted` has is that of another model.
 void find_other_speed(stage_report& rate, double rate_hz, double samples_per_revolution,
                       const model& wanted) {
@@ -46,7 +59,8 @@ void find_other_speed(stage_report& rate, double rate_hz, double samples_per_rev
   const auto is_near = [rate_hz](double nominal) {
     return std::abs(rate_hz - nominal) <= other_model_tolerance * nominal;
   };
-  const bool is_known_rate = rate_hz <= 0.0 || std::ranges::any_of(rates, is_near);
+  const bool is_known_rate = rate_hz <= 0.0 || std::ranges::any_of(rates, is_near) ||
+                             is_rate_of_owners(rate, rate_hz, wanted);
   const double least_hz = wanted.frequency.min_dhz / 10.0;
   const double most_hz = wanted.frequency.max_dhz / 10.0;  // 0: not known
   const bool is_possible =
@@ -246,8 +260,12 @@ void report_rate(stage_log& log, const stream_statistics& measured, const device
   }
   if (const double nominal_hz = nominal_rate_hz(known, rate_hz, wanted); nominal_hz > 0.0) {
     rate.add("expected_sample_rate_hz", nominal_hz);
-    const bool is_off = std::abs(rate_hz - nominal_hz) > sample_rate_tolerance * nominal_hz;
+    const bool is_off = std::abs(rate_hz - nominal_hz) > sample_rate_tolerance * nominal_hz &&
+                        !is_rate_of_owners(rate, rate_hz, wanted);
     if (is_off && is_certain) rate.find(diagnosis::sample_rate_off);
+  }
+  if (const std::string how = speed_without_commands(wanted); !how.empty()) {
+    rate.remark += (rate.remark.empty() ? "" : " ") + ("Its speed: " + how + ".");
   }
   log.report(std::move(rate));
 }
