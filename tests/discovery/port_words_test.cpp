@@ -53,7 +53,9 @@ TEST(PortWords, TheNameThatIsMeant) {
     EXPECT_EQ(port.error().detail(), error_detail::bad_name) << given;
     const auto made = lidar::open(given);
     ASSERT_FALSE(made) << given;
-    EXPECT_NE(made.error().message().find("did you mean " + meant + "?"), std::string::npos)
+    // "?model=x4" behind the name is not part of it.
+    const std::string name = meant.substr(0, meant.find('?'));
+    EXPECT_NE(made.error().message().find("did you mean " + name + "?"), std::string::npos)
         << made.error().message();
   }
 }
@@ -121,7 +123,7 @@ TEST(PortWords, ListsThePortsThatWereNotLookedAt) {
       << "ports with such a bridge were searched";
   const error none = no_lidar({}, false);
   EXPECT_EQ(none.subject(), "");
-  const std::vector<port_info> many(20, port("/dev/ttyS0"));
+  const std::vector<port_info> many(20, port("/dev/ttyTHS1"));
   const error of_many = no_lidar(many, false);
   EXPECT_TRUE(of_many.subject().ends_with(" ...)")) << of_many.subject();
 }
