@@ -70,6 +70,7 @@ TEST_F(UserWords, ANameOfAnotherKindHasTheRightOne) {
       std::vector<std::string> words{verb, given};
       if (words[0] == "set") words.emplace_back("frequency=10");
       if (words[0] == "record") words.push_back(path("o.mcap"));
+      if (words[0] == "view") words.emplace_back("--once");
       const outcome done = run(words);
       EXPECT_EQ(done.code, 2) << verb << done.err;
       EXPECT_THAT(done.err, HasSubstr(wanted)) << verb;
