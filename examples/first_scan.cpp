@@ -11,9 +11,8 @@ int report(const g4lidar::error& why) {
 int main(int count, char** words) {
   using namespace std::chrono_literals;
   g4lidar::lidar_options options{.device = count > 1 ? words[1] : ""};  // else the only lidar
-  options.frequency = g4lidar::scan_frequency::hz(10);                  // revolutions per second
   options.reconnect = true;                                    // an unplug does not end the loop
-  auto lidar = g4lidar::lidar::open(usable_options(options));  // a recording has no frequency
+  auto lidar = g4lidar::lidar::open(usable_options(options));  // a file does not reconnect
   if (!lidar) return report(lidar.error());
   if (auto started = lidar->start(); !started) return report(started.error());
   int scans_left = 5;

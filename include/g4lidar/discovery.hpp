@@ -55,6 +55,13 @@ G4LIDAR_API void find_holders(std::span<port_info> ports);
 /// not included. A CP2102 may also belong to any other device. *Never waits.*
 [[nodiscard]] G4LIDAR_API bool is_g4_bridge(const port_info& port) noexcept;
 
+/// Whether nothing is written to the port unless the user names it, whatever the options are: a console of this
+/// computer, the port of a login (`holder`), a Bluetooth port. Reads a file of the system. *Allocates.*
+[[nodiscard]] G4LIDAR_API bool is_reserved(const port_info& port);
+
+/// The USB bridge of the port as people know it: "FT231X", "CH340", "UART" of a port that is no USB device. *Allocates.*
+[[nodiscard]] G4LIDAR_API std::string bridge_of(const port_info& port);
+
 /// A port that appeared or disappeared.
 struct port_event {
   bool plugged;    ///< True: appeared. False: disappeared.
@@ -135,7 +142,8 @@ struct found_lidar {
 /// How lidars are searched.
 struct find_options {
   /// Write to every serial port, also to ports without the USB bridge of a G4. Commands of two bytes each
-  /// are then sent to any device, at several rates: a printer, a modem, a robot arm.
+  /// are then sent to any device, at several rates: a printer, a modem, a robot arm. Not to ports that is_reserved() is
+  /// true for, and not to those that a process has open, as far as this user sees it.
   bool probe_all_ports = false;
   std::uint32_t baud = 0;                         ///< 0: all that lidars have.
   std::chrono::milliseconds probe_timeout{3000};  ///< For each port.
@@ -154,8 +162,9 @@ struct find_options {
 /// - "": the port of the only lidar. With one USB bridge of a G4, its port; with several, they are
 ///   searched (writes), and one that cannot be searched counts as one with a lidar.
 ///
-/// The path is not opened and need not exist. Fails with bad_option, no_port, several_ports (the
-/// subject lists them), or system; for "serial:" also with permission or busy, if that prevented
+/// The path is not opened and need not exist. Fails with bad_option (also for what looks like a misspelled name:
+/// "ttyUSB0", "COM3", "udp:HOST:PORT", "HOST:PORT"; the subject has the right one), no_port (the subject lists the
+/// ports that were not looked at), several_ports (the subject lists them), or system; for "serial:" also with permission or busy, if that prevented
 /// the query of a port and no other lidar has that number.
 [[nodiscard]] G4LIDAR_API result<port_info> select_port(std::string_view which,
                                                         const find_options& options = {});

@@ -89,6 +89,7 @@ enum class error_detail : std::uint8_t {
   other_samples,  ///< other_device: packets whose samples have another size than those of the named model.
   other_maker,  ///< other_device: packets of another maker, or of another kind of device.
   not_passed,  ///< permission: not by the mode of the port: a container or a sandbox may not use the device.
+  other_bridges,  ///< no_port: there are ports that were not looked at, because they have another USB bridge.
 };
 
 /// One error. Trivially copyable, never allocates.

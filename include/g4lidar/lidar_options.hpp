@@ -9,6 +9,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "g4lidar/core/model.hpp"
 #include "g4lidar/detail/api.hpp"
@@ -52,6 +53,9 @@ struct lidar_options {
   /// How long open() waits for a device that is not there yet, or cannot be opened yet: after an error that may pass
   /// (error::may_pass()) it tries again twice a second. milliseconds::max(): without limit.
   std::chrono::milliseconds device_wait{0};
+  /// Where `device` is no name of a port: whether ports without the USB bridge of a G4 are looked at, too, before and
+  /// after a loss. See find_options::probe_all_ports: bytes are sent to whatever is attached there.
+  bool probe_all_ports = false;
   /// What sends the bytes; valid as long as the lidar and its scans. Null: what a recording or `sim:`
   /// states, raw bytes show, or a search at the port finds; of a connector of the program a G4. A source
   /// that states another model is refused with bad_option, and a device that reports another one
@@ -99,6 +103,9 @@ struct lidar_options {
 
 /// The words of all models: "g4, g4-pro, ...". Allocates.
 [[nodiscard]] G4LIDAR_API std::string model_words();
+/// Why model_named() finds none: that the label is that of a product with another protocol, or which words there are.
+/// Allocates.
+[[nodiscard]] G4LIDAR_API std::string why_no_model(std::string_view label);
 /// The words of these models: "x2, x2l". Allocates.
 [[nodiscard]] G4LIDAR_API std::string model_words(std::span<const g4lidar::model* const> which);
 

@@ -5,7 +5,9 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "g4lidar/core/request.hpp"
 #include "g4lidar/detail/api.hpp"
@@ -64,6 +66,20 @@ struct setting_info {
 [[nodiscard]] G4LIDAR_API std::optional<std::int32_t> number_of(const answer& value) noexcept;
 /// The request that sets a value of a setting; of anything else, one that a session refuses. *Pure.*
 [[nodiscard]] G4LIDAR_API request change_to(const answer& value) noexcept;
+/// How the speed of lidars like `which` is set without commands: "a voltage or PWM at its pin M_SCTR; ..."; empty where
+/// a command sets it. *Allocates.*
+[[nodiscard]] G4LIDAR_API std::string speed_without_commands(const model& which);
+/// What commands set, and how the speed is set without: "commands set nothing; its speed: ...". *Allocates.*
+[[nodiscard]] G4LIDAR_API std::string ways_to_set(const model& which);
+
+/// What the table of models states about one, as text: {"baud", "115200"}.
+struct model_fact {
+  std::string_view name;  ///< Valid forever.
+  std::string text;
+};
+/// Number, rates, frequency, range, samples, the direction of 0, commands: the row of docs/models.md. *Allocates.*
+[[nodiscard]] G4LIDAR_API std::vector<model_fact> facts_of(const model& which);
+
 /// Sets the option of this setting; nothing for an answer that is of none.
 G4LIDAR_API void set_option(lidar_options& options, const answer& value) noexcept;
 

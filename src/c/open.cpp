@@ -120,6 +120,7 @@ int take_lidar_options(const g4lidar_options* given, opening& into, g4lidar_erro
   if (!take_model(taken.model, into.how.model)) return refuse_model(error, taken.model);
   into.how.is_cancelled = question_of(taken);
   into.how.baud = taken.baud;
+  into.how.probe_all_ports = taken.probe_all_ports;
   into.how.reconnect = taken.reconnect;
   into.how.partial_scans = taken.partial_scans;
   into.how.tuning.transport_delay = std::chrono::nanoseconds(taken.transport_delay_ns);

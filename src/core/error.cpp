@@ -119,7 +119,7 @@ struct detail_words {
   std::string_view cause;
   std::string_view advice;
 };
-constexpr std::array<detail_words, 22> all_details{{
+constexpr std::array<detail_words, 23> all_details{{
     {"no scan arrived in time, because the motor spins up",
      "Call again or wait longer: the first scan arrives about 0.7 s after the start, later with a "
      "heavy or cold motor. If the head does not turn within 10 s, check the power supply."},
@@ -193,8 +193,12 @@ constexpr std::array<detail_words, 22> all_details{{
     {"the system does not let this process use the device, whatever the mode of the port",
      "Pass the device to the container (`docker run --device /dev/ttyUSB0`), or allow it to the "
      "service or the sandbox in which the program runs."},
+    {"no port has the USB bridge that lidars usually have (CP2102)",
+     "`g4-dump doctor <port>` looks at one of them: then name it. Or look at all of them "
+     "(--all-ports; in a program the "
+     "option probe_all_ports). Else connect the lidar with a data cable, and check `dmesg`."},
 }};
-static_assert(all_details.size() == static_cast<std::size_t>(error_detail::not_passed));
+static_assert(all_details.size() == static_cast<std::size_t>(error_detail::other_bridges));
 
 constexpr bool in_order() {
   for (std::size_t i = 0; i < all_words.size(); ++i) {

@@ -205,6 +205,7 @@ std::string_view name_of(stage_verdict how) noexcept {
 
 diagnosis diagnosis_of(problem what) noexcept {
   if (what == problem::gone || what == problem::end_of_input) return unplugged;
+  if (what == problem::bad_option) return no_port;  // a name that is none
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const auto* const known = std::get_if<problem>(&rows[i].advice);
     if (known != nullptr && *known == what) return static_cast<diagnosis>(i);

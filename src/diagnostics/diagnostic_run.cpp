@@ -69,7 +69,7 @@ class port_stages {
   }
 
   std::unique_ptr<transport> open(const std::string& source) {
-    auto found = select_port(source);
+    auto found = select_port(source, {.probe_all_ports = log_.options().probe_all_ports});
     if (!found) return give_up(found.error());
     port_info port = std::move(*found);
     if (!look_at_port(port) || !look_at_permission(port.path)) return nullptr;

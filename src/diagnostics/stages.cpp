@@ -2,7 +2,6 @@
 // The stages that devices and files share, from the measurements.
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <span>
 #include <utility>
 
@@ -13,12 +12,6 @@
 namespace g4lidar {
 namespace {
 
-constexpr double frequency_tolerance = 0.06;
-constexpr double sample_rate_tolerance = 0.12;
-/// Between the rates of different models: of a G4 4000, 8000 and 9000, of others 5000 and 10000.
-constexpr double other_model_tolerance = 0.06;
-/// How far a number of samples per revolution may be beyond those at the limits of rate and frequency.
-constexpr double revolution_tolerance = 0.1;
 /// More than a USB packet of 64 bytes at 230400 baud.
 constexpr double held_back_limit_ms = 3.3;
 
@@ -30,42 +23,6 @@ double held_back_limit_of_ms(std::uint32_t baud) noexcept {
 /// The amount of damage up to which there is only a warning.
 constexpr std::uint64_t few_events = 2;
 constexpr double few_lost = 0.002;
-
-/// The program was suspended for as long as a stall: what depends on time is not judged.
-bool is_host_busy(const stream_statistics& measured) noexcept {
-  return measured.tally().arrivals.longest_host_pause_ns() >= arrival_statistics::stall_ns;
-}
-
-/// Bytes without device information: a speed that no lidar like `wanted` has is that of another model.
-void find_other_speed(stage_report& rate, double rate_hz, double samples_per_revolution,
-                      const model& wanted) {
-  std::vector<double> rates;
-  for (const sample_rate_entry& each : wanted.rates.entries) {
-    if (each.hz != 0) rates.push_back(each.hz);
-  }
-  const auto is_near = [rate_hz](double nominal) {
-    return std::abs(rate_hz - nominal) <= other_model_tolerance * nominal;
-  };
-  const bool is_known_rate = rate_hz <= 0.0 || std::ranges::any_of(rates, is_near);
-  const double least_hz = wanted.frequency.min_dhz / 10.0;
-  const double most_hz = wanted.frequency.max_dhz / 10.0;  // 0: not known
-  const bool is_possible =
-      most_hz <= 0.0 ||
-      (samples_per_revolution >= (1.0 - revolution_tolerance) * rates.front() / most_hz &&
-       samples_per_revolution <= (1.0 + revolution_tolerance) * rates.back() / least_hz);
-  if (is_known_rate && is_possible) return;
-  rate.find(diagnosis::other_device);
-  rate.outcome = std::min(rate.outcome, stage_verdict::warn);
-  const auto in_words = [](double hz) { return std::to_string(std::lround(hz)); };
-  rate.remark =
-      one_of(wanted) + " measures " + list_of(rates, in_words, " or ") + " samples per second";
-  rate.remark.front() = 'A';  // "An X4"
-  if (most_hz > 0.0) {
-    rate.remark += " at " + std::to_string(std::lround(least_hz)) + " to " +
-                   std::to_string(std::lround(most_hz)) + " Hz";
-  }
-  rate.remark += ".";
-}
 
 /// "The number 15 is that of a G2; that of an X4 is 6."
 std::string other_number(std::uint8_t id, const model& wanted) {
@@ -86,22 +43,6 @@ std::string other_number(std::uint8_t id, const model& wanted) {
   if (product.empty() && having.empty())
     text += " Please report it, with the file of g4-dump doctor --report.";
   return text;
-}
-
-/// The sample rate that the lidar reports, or else the nearest one of `wanted`, if it has identified
-/// itself; 0: neither.
-double nominal_rate_hz(const device_snapshot& known, double measured_hz, const model& wanted) {
-  if (known.sample_rate_hz) return *known.sample_rate_hz;
-  if (!known.information) return 0.0;
-  double nearest_hz = 0.0;
-  for (const sample_rate_entry& each : wanted.rates.entries) {
-    if (each.hz == 0) continue;
-    const double hz = each.hz;
-    if (nearest_hz == 0.0 || std::abs(hz - measured_hz) < std::abs(nearest_hz - measured_hz)) {
-      nearest_hz = hz;
-    }
-  }
-  return nearest_hz;
 }
 
 /// The last diagnosis of each stage, in the order of the enumeration. An unplug belongs to the port.
@@ -210,46 +151,6 @@ void judge_stream(stage_report& stream, const stream_statistics& measured, doubl
 void judge_motor(stage_report& motor, const stream_statistics& measured) {
   if (measured.tally().counts.packets <= few_packets || measured.was_steady()) return;
   motor.find(measured.stands() ? diagnosis::motor_stuck : diagnosis::motor_unsteady);
-}
-
-void report_rate(stage_log& log, const stream_statistics& measured, const device_snapshot& known,
-                 const model& wanted) {
-  const double frequency_hz = measured.tally().frequency_hz();
-  const double rate_hz = measured.tally().sample_rate_hz();
-  // A computer that is busy again and again makes arrivals late that look like another rate.
-  const bool is_certain = !is_host_busy(measured);
-  stage_report rate{.stage = diagnostic_stage::rate};
-  const double reported_hz = true_frequency_dhz(wanted, measured.tally().reported_dhz()) / 10.0;
-  if (reported_hz > 0.0) rate.add("reported_hz", reported_hz);
-  if (measured.tally().turns_per_sample() > 0.0) {
-    rate.add("samples_per_revolution", 1.0 / measured.tally().turns_per_sample());
-  }
-  const bool is_unknown_model = !known.information && !known.sample_rate_hz && is_certain &&
-                                measured.was_steady() && measured.tally().turns_per_sample() > 0.0;
-  if (frequency_hz <= 0.0) {
-    rate.outcome = stage_verdict::skipped;
-    rate.remark = "There is too little with times to measure it.";
-    const double turns = measured.tally().turns_per_sample();
-    if (is_unknown_model) find_other_speed(rate, reported_hz / turns, 1.0 / turns, wanted);
-    return log.report(std::move(rate));
-  }
-  rate.add("measured_hz", frequency_hz);
-  if (known.frequency) {
-    const double set_hz = known.frequency->chz / 100.0;
-    rate.add("set_hz", set_hz);
-    const bool is_off = std::abs(frequency_hz - set_hz) > frequency_tolerance * set_hz;
-    if (is_off && is_certain && measured.was_steady()) rate.find(diagnosis::frequency_off);
-  }
-  rate.add("sample_rate_hz", rate_hz);
-  if (is_unknown_model) {
-    find_other_speed(rate, rate_hz, 1.0 / measured.tally().turns_per_sample(), wanted);
-  }
-  if (const double nominal_hz = nominal_rate_hz(known, rate_hz, wanted); nominal_hz > 0.0) {
-    rate.add("expected_sample_rate_hz", nominal_hz);
-    const bool is_off = std::abs(rate_hz - nominal_hz) > sample_rate_tolerance * nominal_hz;
-    if (is_off && is_certain) rate.find(diagnosis::sample_rate_off);
-  }
-  log.report(std::move(rate));
 }
 
 void report_loss(stage_log& log, const stream_statistics& measured, const model& wanted,

@@ -64,6 +64,9 @@ void examine_file(const std::string& source, stage_log& log);
 
 // The stages that devices and files share.
 
+/// The program was suspended for as long as a stall: what depends on time is not judged.
+[[nodiscard]] bool is_host_busy(const stream_statistics& measured) noexcept;
+
 /// identity; false for another model than `wanted`.
 bool report_identity(stage_log& log, const std::optional<device_information>& known,
                      const model& wanted, bool is_named);

@@ -2,11 +2,13 @@
 #include "g4lidar/discovery.hpp"
 
 #include <algorithm>
+#include <functional>
+#include <iterator>
 #include <utility>
 
 #include "core/time_limit.hpp"
 #include "g4lidar/transport/serial_port.hpp"
-#include "system_connector.hpp"
+#include "port_words.hpp"
 
 namespace g4lidar {
 namespace {
@@ -20,12 +22,20 @@ result<recognised_lidar> search_at(const port_info& port, const find_options& op
                 {.baud = options.baud});
 }
 
-/// The ports that the library may write to: only this function decides that.
-result<std::vector<port_info>> candidates(const find_options& options) {
+/// The ports that the library may write to: only this function decides that. `others` gets the rest.
+result<std::vector<port_info>> candidates(const find_options& options,
+                                          std::vector<port_info>* others = nullptr) {
   auto ports = list_ports();
-  if (ports && !options.probe_all_ports) {
-    std::erase_if(*ports, [](const port_info& port) { return !is_g4_bridge(port); });
+  if (!ports) return ports;
+  if (options.probe_all_ports) find_holders(*ports);
+  const auto is_written = [&options](const port_info& port) {
+    const bool is_free = port.holder.empty() && !is_reserved(port);
+    return is_g4_bridge(port) || (options.probe_all_ports && is_free);
+  };
+  if (others != nullptr) {
+    std::ranges::copy_if(*ports, std::back_inserter(*others), std::not_fn(is_written));
   }
+  std::erase_if(*ports, std::not_fn(is_written));
   return ports;
 }
 
@@ -76,13 +86,17 @@ result<port_info> with_serial_number(std::string_view digits, std::string_view w
 }
 
 result<port_info> the_only_lidar(const find_options& options) {
-  auto ports = candidates(options);
+  std::vector<port_info> others;
+  auto ports = candidates(options, &others);
   if (!ports) return tl::unexpected(ports.error());
-  if (ports->size() == 1) return the_only_one(*std::move(ports), "");
-  std::erase_if(*ports, [&](const port_info& port) {
-    const auto lidar = search_at(port, options);
-    return !lidar && !is_unasked(lidar.error());
-  });
+  const bool has_looked = ports->size() > 1;
+  if (has_looked) {
+    std::erase_if(*ports, [&](const port_info& port) {
+      const auto lidar = search_at(port, options);
+      return !lidar && !is_unasked(lidar.error());
+    });
+  }
+  if (ports->empty()) return tl::unexpected(no_lidar(others, has_looked));
   return the_only_one(*std::move(ports), "");
 }
 
@@ -101,6 +115,7 @@ result<std::vector<found_lidar>> find_lidars(const find_options& options) {
 
 result<port_info> select_port(std::string_view which, const find_options& options) {
   if (which.empty()) return the_only_lidar(options);
+  if (const auto wrong = misspelled(which)) return tl::unexpected(*wrong);
   if (which.starts_with(usb_prefix)) return at_usb_place(which.substr(usb_prefix.size()), which);
   if (which.starts_with(serial_prefix)) {
     return with_serial_number(which.substr(serial_prefix.size()), which, options);

@@ -45,7 +45,7 @@ bool has_rate(const model& row, std::uint32_t baud) noexcept {
 }
 
 bool may_measure(const model& row, std::uint32_t hz) noexcept {
-  return rate_difference(row, hz) <= 10;
+  return rate_difference(row, hz) <= 10 || is_seen_rate(row, hz);
 }
 
 bool is_surely_another(const model& stated, std::uint8_t number, std::uint32_t baud) noexcept {

@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Which models of the table fit what is known about a lidar, and which other products are known by their
-// numbers.
+// Which models of the table fit what is known about a lidar.
 #pragma once
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <string_view>
 #include <vector>
 
 #include "g4lidar/core/model.hpp"
@@ -59,31 +57,5 @@ struct lidar_signs {
 /// Whether a two-way model may send such packets: one fits, and with the sample rate, unless only one-way
 /// models have that. *Allocates.*
 [[nodiscard]] bool may_be_two_way(const lidar_signs& seen);
-
-/// Another product of the same manufacturer that identifies itself with `id`, and that has another
-/// protocol; empty if none is known. Valid forever. *Pure.*
-[[nodiscard]] constexpr std::string_view other_product(std::uint8_t id) noexcept {
-  struct product {
-    std::uint8_t first;
-    std::uint8_t last;
-    std::string_view name;
-  };
-  constexpr std::array<product, 12> all{{{23, 23, "R3"},
-                                         {51, 51, "GS1"},
-                                         {52, 52, "GS2"},
-                                         {53, 53, "GS5"},
-                                         {54, 54, "GS6"},
-                                         {110, 110, "TEA"},
-                                         {130, 130, "TSA"},
-                                         {131, 131, "TSA Pro"},
-                                         {160, 160, "SDM15"},
-                                         {161, 161, "SDM18"},
-                                         {200, 200, "T15 or T30"},
-                                         {210, 212, "TIA"}}};
-  for (const product& each : all) {
-    if (each.first <= id && id <= each.last) return each.name;
-  }
-  return {};
-}
 
 }  // namespace g4lidar

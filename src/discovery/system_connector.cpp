@@ -15,7 +15,6 @@
 namespace g4lidar {
 namespace {
 
-constexpr std::string_view tcp_prefix = "tcp:";
 /// A lidar that was just plugged in boots, or its motor spins up.
 constexpr std::int64_t opening_search_ns = 5'000'000'000;
 
@@ -85,13 +84,14 @@ result<std::unique_ptr<connector>> system_connector::make(std::string_view devic
 
 result<std::unique_ptr<connector>> system_connector::find(std::string_view device,
                                                           const search_options& known,
-                                                          bool always) {
+                                                          bool always, bool probes_all_ports) {
   const model* const named = known.model;
   const std::uint32_t usual_baud = named != nullptr ? named->bauds[0] : g4_model.bauds[0];
   const std::uint32_t first_baud = known.baud != 0 ? known.baud : usual_baud;
   const bool has_one_rate = known.baud != 0 || (named != nullptr && named->bauds[1] == 0);
-  if (named != nullptr && has_one_rate && !always) return make(device, first_baud, named);
   std::unique_ptr<system_connector> made(new system_connector(device, first_baud, named));
+  made->probes_all_ports_ = probes_all_ports;
+  if (named != nullptr && has_one_rate && !always) return made;
   made->is_searched_ = named == nullptr;
   made->named_baud_ = known.baud;
   if (auto done = made->search_first(known); !done) return tl::unexpected(done.error());
@@ -149,6 +149,7 @@ result<std::unique_ptr<transport>> system_connector::open_transport() {
 
 result<std::unique_ptr<transport>> system_connector::first_connect() {
   find_options how;
+  how.probe_all_ports = probes_all_ports_;
   how.baud = named_baud_;
   const auto port = select_port(device_, how);
   if (!port) return tl::unexpected(port.error());
@@ -205,7 +206,7 @@ bool system_connector::may_be_ours(const port_info& port) const noexcept {
                        port.product_id == first_.product_id;
   if (goes_by_place()) return is_same;
   if (is_g4_bridge(port)) return true;
-  return is_same && device_.starts_with(usb_prefix);
+  return is_same && (probes_all_ports_ || device_.starts_with(usb_prefix));
 }
 
 bool system_connector::is_refused(const std::string& path) const {

@@ -13,12 +13,10 @@
 #include "g4lidar/discovery.hpp"
 #include "g4lidar/transport/connector.hpp"
 #include "path_watch.hpp"
+#include "port_words.hpp"
 #include "transport/fd_port.hpp"
 
 namespace g4lidar {
-
-inline constexpr std::string_view serial_prefix = "serial:";
-inline constexpr std::string_view usb_prefix = "usb:";
 
 /// Opens the device that lidar_options::device names, repeatedly. It searches a lost lidar at its
 /// old path and at every usual USB bridge; the driver identifies it by its number. It opens a
@@ -35,9 +33,11 @@ class system_connector final : public connector {
   /// 0 and the model has several. The open transport is kept for the first connect(), because each opening raises
   /// DTR. Takes up to 5 s where nothing answers or sends. Fails like search(). If the port cannot be opened, the
   /// first connect() fails. `always`: also if there is nothing to be searched but other rates than those of the model.
+  /// `probes_all_ports`: find_options::probe_all_ports.
   [[nodiscard]] static result<std::unique_ptr<connector>> find(std::string_view device,
                                                                const search_options& known,
-                                                               bool always = false);
+                                                               bool always = false,
+                                                               bool probes_all_ports = false);
 
   [[nodiscard]] result<std::unique_ptr<transport>> connect() noexcept override;
   [[nodiscard]] std::int64_t now_ns() const noexcept override { return steady_now_ns(); }
@@ -83,6 +83,7 @@ class system_connector final : public connector {
   std::uint32_t named_baud_;  // 0: it is searched
   bool is_searched_ = false;  // the model
   recognition found_;
+  bool probes_all_ports_ = false;
   const model* named_;                                          // or found
   std::vector<const model*> candidates_;                        // found
   std::optional<result<std::unique_ptr<transport>>> searched_;  // for the first connect()

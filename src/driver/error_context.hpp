@@ -11,6 +11,7 @@
 
 #include "g4lidar/core/model.hpp"
 #include "g4lidar/core/request.hpp"
+#include "g4lidar/core/session/model_requests.hpp"
 #include "g4lidar/detail/enumerators.hpp"
 
 namespace g4lidar {
@@ -54,22 +55,47 @@ class error_context {
     return *this;
   }
 
-  /// "8000, 16000 or 18000 of a G6".
+  /// "8000, 16000 or 18000".
   error_context& add_rates(const model& which) noexcept {
     const std::uint8_t count = rate_count(which);
     for (std::uint8_t code = 0; code < count; ++code) {
       const std::string_view before = code == 0 ? "" : code + 1 == count ? " or " : ", ";
       add(before).add(rate_hz_of_code(which, code));
     }
-    return add(" of ").add(article_of(which)).add(" ").add(which.name);
+    return *this;
   }
-  /// "5 Hz to 12 Hz of a G4".
+  /// "5 Hz to 12 Hz".
   error_context& add_frequencies(const model& which) noexcept {
     const auto hz = [](std::uint16_t dhz) {
       return scan_frequency{static_cast<std::uint16_t>(10 * dhz)};
     };
-    add(hz(which.frequency.min_dhz)).add(" to ").add(hz(which.frequency.max_dhz));
+    return add(hz(which.frequency.min_dhz)).add(" to ").add(hz(which.frequency.max_dhz));
+  }
+  /// " of a G6".
+  error_context& add_owner(const model& which) noexcept {
     return add(" of ").add(article_of(which)).add(" ").add(which.name);
+  }
+  /// What the commands of a model set, and how its speed is set without: "(commands set nothing; its speed: ...)".
+  error_context& add_ways(const model& which) noexcept {
+    std::string_view before = " (commands set ";
+    const auto next = [&](request_kind change, std::string_view name) {
+      if (!has_request(which, change)) return false;
+      add(before).add(name);
+      before = "; ";
+      return true;
+    };
+    if (next(request_kind::set_sample_rate, "sample_rate: ")) add_rates(which);
+    if (next(request_kind::set_scan_frequency, "frequency: ")) add_frequencies(which);
+    static_cast<void>(next(request_kind::set_direction, "direction; constant; idle"));
+    static_cast<void>(next(request_kind::set_protection, "protection"));
+    if (before != "; ") add(before).add("nothing");
+    return add_speed(which, "; its speed: ").add(")");
+  }
+  /// How the speed of a model is set without commands, behind `before`; nothing where commands set it.
+  error_context& add_speed(const model& which, std::string_view before) noexcept {
+    if (which.frequency.pin.empty()) return *this;
+    add(before).add("a voltage or PWM at its pin ").add(which.frequency.pin);
+    return add("; USB boards leave it at their default");
   }
 
   // NOLINTNEXTLINE(google-explicit-constructor): it is a text.

@@ -26,6 +26,11 @@ using std::chrono::milliseconds;
 }  // namespace
 
 std::string model_words() { return list_of(models, &model::word); }
+std::string why_no_model(std::string_view label) {
+  const std::string given = in_quotes(label);
+  if (!other_product(label).empty()) return given + " is not supported: it has another protocol";
+  return given + " is not one of " + model_words();
+}
 std::string model_words(std::span<const model* const> which) {
   return list_of(which, [](const model* each) { return each->word; });
 }

@@ -33,13 +33,12 @@ error bad(std::string_view what, std::int64_t given, std::string_view unit) noex
 error bad_setting(const setting_info& of, const model& which, std::uint16_t given) noexcept {
   error_context words(of.name);
   words.add(": ");
-  if (of.type == setting_type::whole) return bad(words.add_rates(which));
+  if (of.type == setting_type::whole) return bad(words.add_rates(which).add_owner(which));
   if (of.type != setting_type::decimal)
     return bad(words.add(of.values[0].word).add(" or ").add(of.values[1].word));
-  const auto [least_dhz, most_dhz, reply, ct] = which.frequency;
+  const auto [least_dhz, most_dhz, reply, ct, pin] = which.frequency;
   words.add(least_dhz * 10U).add(" to ").add(most_dhz * 10U).add(" (").add(least_dhz / 10U);
-  words.add(" to ").add(most_dhz / 10U).add(" Hz of ").add(article_of(which));
-  words.add(" ").add(which.name).add(")");
+  words.add(" to ").add(most_dhz / 10U).add(" Hz").add_owner(which).add(")");
   return bad(words, given, "");
 }
 
@@ -66,6 +65,7 @@ constexpr std::array option_rows{
     row("baud", live, [](auto& of) -> auto& { return of.baud; }),
     row("insist_on_model", live, [](auto& of) -> auto& { return of.insist_on_model; }),
     row("listen_only", live, [](auto& of) -> auto& { return of.listen_only; }),
+    row("probe_all_ports", live, [](auto& of) -> auto& { return of.probe_all_ports; }),
     row("sample_rate", live, [](auto& of) -> auto& { return of.sample_rate; }),
     row("frequency", live, [](auto& of) -> auto& { return of.frequency; }),
     row("direction", live, [](auto& of) -> auto& { return of.direction; }),
@@ -128,10 +128,12 @@ std::optional<error> problem_with_settings(const lidar_options& options) noexcep
     if (found || !setting) return;
     const setting_info& of = *setting_of(*setting);
     const request change = requests::set(*setting);
-    if (options.listen_only || !has_request(which, change.what)) {
-      found.emplace(
-          task::configuring, problem::not_supported,
-          error_context(of.name).add(", ").add(options.listen_only ? "listen_only" : which.name));
+    if (options.listen_only) {
+      found.emplace(task::configuring, problem::not_supported,
+                    error_context(of.name).add(", listen_only"));
+    } else if (!has_request(which, change.what)) {
+      found.emplace(task::configuring, problem::not_supported,
+                    error_context(of.name).add(", ").add(which.name).add_ways(which));
     } else if (!is_possible(change, which)) {
       found = bad_setting(of, which, change.value);
     }

@@ -13,6 +13,7 @@
 #include "error_context.hpp"
 #include "g4lidar/core/model.hpp"
 #include "g4lidar/error.hpp"
+#include "g4lidar/setting_table.hpp"
 #include "live_stage.hpp"
 #include "unrecognised_bytes.hpp"
 
@@ -76,13 +77,16 @@ namespace g4lidar {
                                          const model& which, std::string_view device) noexcept {
   error_context about = error_context(device).add(wanted);
   if (why == refusal::not_supported) {
-    return {doing, problem::not_supported, about.add(", ").add(which.name)};
+    about.add(", ").add(which.name);
+    const bool is_setting = std::ranges::any_of(
+        all_settings(), [&](const auto& of) { return of.change == wanted.what; });
+    return {doing, problem::not_supported, is_setting ? about.add_ways(which) : about};
   }
   if (why != refusal::bad_setting) return {doing, problem::scanning, about};
   if (wanted.what == request_kind::set_scan_frequency) {
-    about.add(" (").add_frequencies(which).add(")");
+    about.add(" (").add_frequencies(which).add_owner(which).add(")");
   } else if (wanted.what == request_kind::set_sample_rate) {
-    about.add(" (").add_rates(which).add(")");
+    about.add(" (").add_rates(which).add_owner(which).add(")");
   }
   return {doing, problem::bad_setting, about};
 }

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/number_text.hpp"
+#include "error_context.hpp"
 #include "g4lidar/core/session/model_requests.hpp"
 
 namespace g4lidar {
@@ -168,6 +169,15 @@ request change_to(const answer& value) noexcept {
         }
       },
       value);
+}
+
+std::string speed_without_commands(const model& which) {
+  return std::string(std::string_view(error_context("").add_speed(which, "")));
+}
+
+std::string ways_to_set(const model& which) {
+  const std::string all(std::string_view(error_context("").add_ways(which)));
+  return all.substr(2, all.size() - 3);  // " (...)"
 }
 
 void set_option(lidar_options& options, const answer& value) noexcept {

@@ -147,8 +147,7 @@ result<const model*> model_in_source(std::string_view name) {
   if (word.empty()) return nullptr;
   const model* const found = model_named(word);
   if (found != nullptr) return found;
-  return failure(task::opening, problem::bad_option,
-                 "model: " + in_quotes(word) + " is not one of " + model_words());
+  return failure(task::opening, problem::bad_option, "model: " + why_no_model(word));
 }
 
 result<const model*> model_of_source(std::string_view name,
@@ -209,7 +208,7 @@ result<std::unique_ptr<connector>> connector_for(const lidar_options& options, b
     case source_kind::device:
       break;
   }
-  return system_connector::find(path, known_of(options, wanted), at_any_rate);
+  return system_connector::find(path, known_of(options, wanted), at_any_rate, options.probe_all_ports);
 }
 
 std::optional<error> problem_with_source(const lidar_options& options) {

@@ -87,6 +87,8 @@ parameter limited_to(const model& which, const parameter& of) {
   if (of.setting == nullptr) return made;
   if (!has_request(which, of.setting->change)) {
     made.constraints = "this model does not have it";
+    const bool is_speed = of.setting->change == request_kind::set_scan_frequency;
+    if (is_speed) made.constraints += "; its speed: " + speed_without_commands(which);
     made.range = {};
   } else if (of.setting->type == setting_type::decimal) {
     made.range = {which.frequency.min_dhz / 10.0, which.frequency.max_dhz / 10.0, of.range[2]};

@@ -124,6 +124,7 @@ result<std::unique_ptr<transport>> open_connection(std::string_view address,
                                                    const tcp_options& options,
                                                    const system_calls& calls) {
   if (address.starts_with("tcp:")) address.remove_prefix(4);
+  if (address.starts_with("//")) address.remove_prefix(2);
   const auto wanted = parse(address);
   if (!wanted) {
     return failure(task::opening, problem::bad_option,

@@ -51,6 +51,33 @@ TEST_F(CModel, RawBytesShowTheirModel) {
   EXPECT_NE(std::string(why_.advice).find("tx20."), std::string::npos) << why_.advice;
 }
 
+TEST_F(CModel, IsNamedInAnySpelling) {
+  for (const char* const label : {"T-mini Pro", "TminiPro", "YDLIDAR T_MINI PRO"}) {
+    EXPECT_EQ(intensity_of(raw_, label), 101) << label;
+    EXPECT_EQ(intensity_of(raw_ + "?model=" + label, nullptr), 101) << label;
+  }
+  EXPECT_EQ(intensity_of(raw_, "GS2"), -1 - G4LIDAR_BAD_OPTION);
+  EXPECT_NE(std::string(why_.message).find("'GS2' is not supported"), std::string::npos)
+      << why_.message;
+}
+
+TEST_F(CModel, TheNameThatIsMeantIsStated) {
+  g4lidar_lidar* made = nullptr;
+  EXPECT_EQ(g4lidar_open("ttyUSB0", &made, &why_), G4LIDAR_BAD_OPTION);
+  EXPECT_NE(std::string(why_.message).find("did you mean /dev/ttyUSB0?"), std::string::npos)
+      << why_.message;
+}
+
+TEST_F(CModel, AllPortsAreForLidarsOnly) {
+  g4lidar_options options = defaults();
+  EXPECT_FALSE(options.probe_all_ports);
+  options.device = raw_.c_str();
+  options.probe_all_ports = true;
+  g4lidar_lidar* made = nullptr;
+  EXPECT_EQ(g4lidar_open_with(&options, &made, &why_), G4LIDAR_BAD_OPTION);
+  EXPECT_NE(std::string(why_.message).find("probe_all_ports"), std::string::npos) << why_.message;
+}
+
 TEST_F(CModel, RecordingsStateIt) {
   g4lidar_recorder_options wanted;
   g4lidar_recorder_options_init(&wanted, sizeof wanted);

@@ -28,6 +28,7 @@ struct option {
 const std::vector<option>& of_lidars() {
   static const std::vector<option> all{
       {"baud", [](auto& of) { of.baud = 115'200; }},
+      {"probe_all_ports", [](auto& of) { of.probe_all_ports = true; }},
       {"sample_rate", [](auto& of) { of.sample_rate = sample_rate::khz_8; }},
       {"frequency", [](auto& of) { of.frequency = scan_frequency::hz(10); }},
       {"direction", [](auto& of) { of.direction = motor_direction::clockwise; }},

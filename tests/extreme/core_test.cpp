@@ -114,8 +114,13 @@ model any_model(test::dice& random) {
     each = {any<std::uint32_t>(random), any<std::uint16_t>(random)};
   made.rates.nominal_hz = any<std::uint32_t>(random);
   made.rates.is_settable = any<bool>(random);
-  made.frequency = {any<std::uint16_t>(random), any<std::uint16_t>(random),
-                    any<std::int16_t>(random), any<std::int8_t>(random)};
+  made.rates.least_seen_hz = any<std::uint32_t>(random);
+  made.rates.most_seen_hz = any<std::uint32_t>(random);
+  made.frequency = {any<std::uint16_t>(random),
+                    any<std::uint16_t>(random),
+                    any<std::int16_t>(random),
+                    any<std::int8_t>(random),
+                    {}};
   made.range = {any<std::uint16_t>(random), any<std::uint16_t>(random)};
   made.turn_deg = any<std::uint16_t>(random);
   made.zero_angle_divisor = any<std::uint8_t>(random);
@@ -131,6 +136,8 @@ TEST(ExtremeCore, Models) {
     use(rate_hz_of_code(which, byte));
     use(code_of_rate(which, number));
     use(expected_rate_of(which, number));
+    use(is_seen_rate(which, any<double>(random)));
+    use(other_product(byte));
     use(true_frequency_dhz(which, any<std::int32_t>(random)));
     use(true_frequency_dhz(which, any<double>(random)));
     use(largest_scan(which));

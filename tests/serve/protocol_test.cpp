@@ -209,6 +209,17 @@ json rows_of(const char* model) {
       {.source = "", .lidars = {{.model = g4lidar::model_named(model)}}}))["setting_rows"];
 }
 
+TEST(PageTexts, SayHowTheSpeedIsSetWithoutCommands) {
+  const auto speed_of = [](const char* model) {
+    const json hello =
+        json::parse(hello_text({.source = "", .lidars = {{.model = g4lidar::model_named(model)}}}));
+    return hello["device"]["speed_by"].get<std::string>();
+  };
+  EXPECT_EQ(speed_of("x4"),
+            "a voltage or PWM at its pin M_SCTR; USB boards leave it at their default");
+  EXPECT_EQ(speed_of("g4"), "");
+}
+
 TEST(PageTexts, OfferTheSettingsThatTheModelHas) {
   EXPECT_TRUE(json::parse(hello_text({.source = "", .lidars = {{}}}))["setting_rows"].empty())
       << "as long as it is not known";

@@ -119,6 +119,7 @@ json device_of(const page_lidar& lidar) {
   made["name"] = model == nullptr ? json(nullptr) : json(model->name);
   made["range_m"] = model == nullptr ? json(nullptr) : json(model->range.max_mm / 1000.0);
   made["has_intensity"] = model == nullptr ? json(nullptr) : json(has_intensity(*model));
+  made["speed_by"] = model == nullptr ? json(nullptr) : json(speed_without_commands(*model));
   return made;
 }
 

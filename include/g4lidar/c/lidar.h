@@ -94,6 +94,10 @@ typedef struct g4lidar_options {
   int32_t zero_angle_cdeg;
   bool has_zero_angle;      /**< Whether zero_angle_cdeg is given. */
   uint8_t more_reserved[3]; /**< 0. */
+  /** Where `device` is no name: whether ports without the USB bridge of a G4 are looked at, too, as with
+   *  g4lidar_find_options.probe_all_ports. */
+  bool probe_all_ports;
+  uint8_t last_reserved[7]; /**< 0. */
 } g4lidar_options;
 
 /** Sets the defaults; `size` is sizeof(g4lidar_options). */

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <string_view>
 
+#include "g4lidar/core/label.hpp"
 #include "g4lidar/core/model_record.hpp"
 #include "g4lidar/device_information.hpp"
 
@@ -66,11 +67,17 @@ inline constexpr auto models = [] {
   };
   constexpr sample_rate_list f4_rates{{{{4000}, {6000}}}, 4000, true};
   constexpr sample_rate_list g6_rates{{{{8000, 100}, {16000, 260}, {18000, 280}}}, 18000, true};
+  constexpr sample_rate_list x2_rates{{{{3000}}}, 3000, false, {}, 2500, 3600};
   constexpr sample_rate_list x3_pro_rates{{{{3000}, {4000}}}};
   constexpr sample_rate_list s2_rates{{{{3000}, {4000}, {5000}}}};
   constexpr sample_rate_list tg_rates{{{{10000}, {18000}, {20000}}}, 0, false, {20000, 10000}};
 
-  constexpr frequency_properties not_set{};
+  constexpr auto by_pin = [](std::string_view pin) { return frequency_properties{.pin = pin}; };
+  constexpr frequency_properties by_sctr = by_pin("M_SCTR");
+  constexpr frequency_properties by_ctr = by_pin("M_CTR");
+  constexpr frequency_properties by_either = by_pin("M_CTR or M_SCTP");
+  constexpr frequency_properties by_any = by_pin("M_SCTR or M_CTR");
+  constexpr frequency_properties by_some = by_pin("for the speed");
   constexpr frequency_properties set_5_to_12{50, 120};
   constexpr frequency_properties set_6_to_12{60, 120};
   constexpr frequency_properties tg_frequency{30, 160, -40, 30};
@@ -112,32 +119,32 @@ inline constexpr auto models = [] {
       {"g7",             "G7",             {21},    {512000},         half_mm_samples, two_way, command,
        g6_rates,         set_5_to_12,  {100, 25000}, 180, 0,   yes,     unknown},
       {"x4",             "X4",             {6},     {128000},         flagged_samples, two_way, dtr,
-       fixed(5000),      not_set,      {120, 10000}, 0,   0,   no,      no},
+       fixed(5000),      by_sctr,      {120, 10000}, 0,   0,   no,      no},
       {"x4-pro",         "X4 Pro",         {4, 6},  {128000},         flagged_samples, one_way, supply,
-       fixed(5000),      not_set,      {120, 10000}, 0,   0,   no,      yes, false, flagged_mm, {}, false, at_its_rate},
+       fixed(5000),      by_ctr,       {120, 10000}, 0,   0,   no,      yes, false, flagged_mm, {}, false, at_its_rate},
       {"x2",             "X2",             {4, 6},  {115200},         flagged_samples, one_way, dtr,
-       fixed(3000),      not_set,      {100, 8000},  0,   0,   no,      unknown, false, flagged_mm, {}, false, of_its_layout},
+       x2_rates,         by_either,    {100, 8000},  0,   0,   no,      unknown, false, flagged_mm, {}, false, of_its_layout},
       {"x2l",            "X2L",            {4, 6},  {115200},         flagged_samples, one_way, dtr,
-       fixed(3000),      not_set,      {100, 8000},  0,   0,   no,      unknown},
+       x2_rates,         by_either,    {100, 8000},  0,   0,   no,      unknown},
       {"x3",             "X3",             {4, 6},  {115200},         flagged_samples, one_way, dtr,
-       fixed(3000),      not_set,      {100, 8000},  0,   0,   no,      unknown},
+       x2_rates,         by_any,       {100, 8000},  0,   0,   no,      unknown},
       {"x3-pro",         "X3 Pro",         {4, 6},  {115200},         flagged_samples, one_way, dtr,
-       x3_pro_rates,     not_set,      {100, 8000},  0,   0,   no,      unknown, false, flagged_mm, {}, false, at_its_rate},
+       x3_pro_rates,     by_any,       {100, 8000},  0,   0,   no,      unknown, false, flagged_mm, {}, false, at_its_rate},
       {"s2",             "S2",             {4, 12}, {115200, 128000}, flagged_samples, one_way, dtr,
-       s2_rates,         not_set,      {80, 12000},  0,   0,   no,      yes, false, intensity_8},
+       s2_rates,         by_any,       {80, 12000},  0,   0,   no,      yes, false, intensity_8},
       {"s2-pro",         "S2 Pro",         {4, 12}, {115200, 128000}, flagged_samples, one_way, dtr,
-       s2_rates,         not_set,      {80, 12000},  0,   0,   no,      yes, false, intensity_8, {}, false, at_its_rate},
+       s2_rates,         by_any,       {80, 12000},  0,   0,   no,      yes, false, intensity_8, {}, false, at_its_rate},
       // Their bauds carry 3 kHz of such samples, not 4.
       {"s2-intensity",   "S2 with intensity", {4, 12}, {115200, 128000}, triangle_8,   one_way, dtr,
-       fixed(3000),      not_set,      {80, 12000},  0,   0,   no,      yes, false, flagged_mm},
+       fixed(3000),      by_any,       {80, 12000},  0,   0,   no,      yes, false, flagged_mm},
       {"s2-pro-intensity", "S2 Pro with intensity", {4, 12}, {115200, 128000}, triangle_8, one_way, dtr,
-       fixed(3000),      not_set,      {80, 12000},  0,   0,   no,      yes, false, flagged_mm, {}, false, at_its_rate},
+       fixed(3000),      by_any,       {80, 12000},  0,   0,   no,      yes, false, flagged_mm, {}, false, at_its_rate},
       {"s4",             "S4",             {4},     {115200},         flagged_samples, two_way, dtr,
-       fixed(4000),      not_set,      {100, 8000},  0,   0,   no,      unknown},
+       fixed(4000),      by_some,      {100, 8000},  0,   0,   no,      unknown},
       {"s4b",            "S4B",            {4, 11}, {153600},         triangle_8,      two_way, dtr,
-       fixed(4000),      not_set,      {100, 8000},  0,   0,   no,      unknown},
+       fixed(4000),      by_some,      {100, 8000},  0,   0,   no,      unknown},
       {"scl",            "SCL",            {22},    {115200},         scl_samples,     one_way, dtr,
-       fixed(3000),      not_set,      {120, 8000},  0,   0,   no,      unknown},
+       fixed(3000),      by_some,      {120, 8000},  0,   0,   no,      unknown},
       {"t-mini",         "T-mini",         {140},   {230400},         tof_8,           two_way, command,
        fixed(4000),      set_6_to_12,  {50, 12000},  0,   0,   unknown, unknown},
       {"t-mini-pro",     "T-mini Pro",     {150},   {230400},         tof_8,           two_way, command,
@@ -153,17 +160,18 @@ inline constexpr auto models = [] {
       {"tg50",           "TG50",           {102},   {512000},         tg_samples,      two_way, command,
        tg_rates,         tg_frequency, {50, 50000},  180, 4,   yes,     unknown, false, whole_mm, tg_old},
       {"tx8",            "TX8",            {100},   {115200},         tof_mm,          one_way, dtr,
-       fixed(4000),      not_set,      {50, 8000},   0,   0,   no,      unknown},
+       fixed(4000),      by_some,      {50, 8000},   0,   0,   no,      unknown},
       {"tx20",           "TX20",           {100},   {115200},         tof_mm,          one_way, dtr,
-       fixed(4000),      not_set,      {50, 20000},  0,   0,   no,      unknown},
+       fixed(4000),      by_some,      {50, 20000},  0,   0,   no,      unknown},
   });
   // clang-format on
 }();
 
-/// The model with this word, or null: "x4-pro". Valid forever. *Pure.*
-[[nodiscard]] constexpr const model* model_named(std::string_view word) noexcept {
+/// The model with this word or label, in any spelling, or null: "x4-pro", "YDLIDAR X4 Pro". See is_label_of(). Valid
+/// forever. *Pure.*
+[[nodiscard]] constexpr const model* model_named(std::string_view label) noexcept {
   for (const model& each : models) {
-    if (each.word == word) return &each;
+    if (is_label_of(label, each.word)) return &each;
   }
   return nullptr;
 }
@@ -220,9 +228,9 @@ namespace detail {
 
 /// Whether the fields of `row` agree with each other and with the protocol. *Pure.*
 [[nodiscard]] constexpr bool is_consistent(const model& row) noexcept {
-  const auto& [min_dhz, max_dhz, reply_offset, ct_offset] = row.frequency;
+  const auto& [min_dhz, max_dhz, reply_offset, ct_offset, pin] = row.frequency;
   const bool has_limits = 0 < row.range.min_mm && row.range.min_mm < row.range.max_mm &&
-                          (min_dhz < max_dhz || max_dhz == 0);
+                          (min_dhz < max_dhz || max_dhz == 0) && pin.empty() == (max_dhz != 0);
   const bool has_names = !row.word.empty() && !row.name.empty() && row.bauds[0] != 0 &&
                          row.ids[0] != 0 && row.ids[0] != row.ids[1];
   const bool has_memory = row.samples.max_samples > 0 && has_room_for(row, row.samples.layout) &&

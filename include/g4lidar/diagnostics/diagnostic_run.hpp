@@ -35,6 +35,7 @@ struct diagnostic_options {
   /// search() finds it; of a file what a recording states, or the raw bytes show, as
   /// model_of_source() finds it. Valid forever.
   const g4lidar::model* model = nullptr;
+  bool probe_all_ports = false;  ///< As that of lidar_options, where the source has no name.
   /// How long to measure the running scan; a file is always read completely.
   std::chrono::nanoseconds measuring_time = std::chrono::seconds(5);
   /// The directions that the user wants: its field_of_view and ignored_sectors, in its frame, for the model that is

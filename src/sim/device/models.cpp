@@ -7,13 +7,16 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "g4lidar/core/label.hpp"
 #include "g4lidar/sim/device_options.hpp"
 
 namespace g4lidar::sim {
 namespace {
 
 const simulated_model* find_model(std::string_view word) noexcept {
-  const auto* const found = std::ranges::find(simulated_models, word, &simulated_model::word);
+  const auto* const found = std::ranges::find_if(
+      simulated_models,
+      [word](const simulated_model& each) { return is_label_of(word, each.word); });
   return found == simulated_models.end() ? nullptr : found;
 }
 

@@ -13,6 +13,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "g4lidar/core/label.hpp"
 #include "sim/read_time.hpp"
 #include "sim/world/world_text.hpp"
 #include "transport/text_file.hpp"
@@ -197,11 +198,15 @@ std::string read_firmware(device_information& info, std::string_view value) {
 }
 
 std::string read_model(setup& into, std::string_view value) {
-  into.model = value;
-  if (use_model(into.device, value, into.other_layout)) return {};
+  if (use_model(into.device, value, into.other_layout)) {
+    into.model = into.device.model;
+    return {};
+  }
+  if (!other_product(value).empty())
+    return refused(value, "is not supported: it has another protocol");
   std::string known;
   for (const std::string_view word : model_words()) {
-    if (word == value) return refused(value, "has one layout of samples only");
+    if (is_label_of(value, word)) return refused(value, "has one layout of samples only");
     known.append(known.empty() ? "" : ", ").append(word);
   }
   return refused(value, "is not one of " + known);

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <poll.h>
 
+#include <array>
 #include <chrono>
 #include <filesystem>
 #include <string>
@@ -10,6 +11,7 @@
 
 #include "g4lidar/diagnostics/diagnostic_run.hpp"
 #include "g4lidar/discovery.hpp"
+#include "g4lidar/lidar.hpp"
 #include "g4lidar/sim/pty_port.hpp"
 #include "g4lidar/transport/serial_port.hpp"
 #include "pty.hpp"
@@ -297,6 +299,51 @@ TEST_F(Hotplug, OtherBridges_AreWrittenToOnlyIfRequested) {
   EXPECT_EQ(::poll(&written, 1, 0), 0);
   EXPECT_THAT(*find_lidars({.probe_all_ports = true, .probe_timeout = 100ms}), IsEmpty());
   EXPECT_EQ(::poll(&written, 1, patience_ms), 1);
+}
+
+TEST_F(Hotplug, NothingIsFound_PortsWithOtherBridgesAreListed) {
+  const bridge ftdi{
+      .name = "ttyUSB3", .place = "2-2", .vendor = "0403", .product = "6015", .driver = "ftdi_sio"};
+  const auto nothing = select_port("");
+  ASSERT_FALSE(nothing);
+  EXPECT_EQ(nothing.error().subject(), "");
+  bed.add_builtin("ttyS0", "4");
+  bed.plug(other);
+  bed.plug(ftdi);
+  const auto made = lidar::open("");
+  ASSERT_FALSE(made);
+  EXPECT_EQ(made.error(), problem::no_port);
+  EXPECT_EQ(made.error().detail(), error_detail::other_bridges);
+  EXPECT_EQ(
+      made.error().subject(),
+      "a lidar (not looked at: /dev/ttyUSB2, PL2303; /dev/ttyUSB3, FT231X; /dev/ttyS0, UART)");
+}
+
+TEST_F(Hotplug, AllPorts_AreSearchedForTheOnlyLidar) {
+  bed.plug(other);
+  auto device = serve(other, '1');
+  EXPECT_FALSE(lidar::open(""));
+  lidar_options options;
+  options.probe_all_ports = true;
+  auto made = lidar::open(options);
+  ASSERT_TRUE(made) << made.error().message();
+  EXPECT_EQ(made->name(), "/dev/ttyUSB2");
+}
+
+TEST_F(Hotplug, ConsolesAndBluetooth_AreNeverWrittenTo) {
+  bed.add_builtin("ttyS0", "4");
+  bed.add_builtin("rfcomm0", "4");
+  bed.add_active_consoles("tty0 ttyS0");
+  const pty console;
+  const pty bluetooth;
+  std::filesystem::create_symlink(console.path(), bed.dev("ttyS0"));
+  std::filesystem::create_symlink(bluetooth.path(), bed.dev("rfcomm0"));
+  const find_options all{.probe_all_ports = true, .probe_timeout = 100ms};
+  EXPECT_THAT(*find_lidars(all), IsEmpty());
+  EXPECT_FALSE(select_port("", all));
+  EXPECT_FALSE(select_port(number('1'), all));
+  std::array<pollfd, 2> written{{{console.master(), POLLIN, 0}, {bluetooth.master(), POLLIN, 0}}};
+  EXPECT_EQ(::poll(written.data(), written.size(), 0), 0);
 }
 
 }  // namespace

@@ -80,6 +80,11 @@ void testbed::add_console(std::string_view name) {
   add("P: /devices/virtual/tty/" + text + "\nE: SUBSYSTEM=tty\nE: DEVNAME=/dev/" + text + "\n");
 }
 
+void testbed::add_active_consoles(std::string_view names) {
+  add("P: /devices/virtual/tty/console\nE: SUBSYSTEM=tty\nE: DEVNAME=/dev/console\nA: active=" +
+      std::string(names) + "\\n\n");
+}
+
 std::string testbed::dev(std::string_view name) const {
   return root_ + "/dev/" + std::string(name);
 }

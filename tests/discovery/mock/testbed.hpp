@@ -40,6 +40,9 @@ class testbed {
   /// A tty without hardware.
   void add_console(std::string_view name);
 
+  /// The terminals of the system's console, as the kernel lists them: "tty0 ttyS0".
+  void add_active_consoles(std::string_view names);
+
   /// Where the link of /dev/<name> must be.
   [[nodiscard]] std::string dev(std::string_view name) const;
 

@@ -50,20 +50,15 @@ expected rate_of_code(const known& of) noexcept {
   return rate_within(hz, expected_rate_of(of.row, hz).tolerance);
 }
 
-struct stated_rate {
-  double hz;
-  double tolerance;
-};
-
 /// By the answer of the lidar, by the model, or the nearest of several.
-stated_rate rate_of_stream(const known& of) noexcept {
+expected_rate rate_of_stream(const known& of) noexcept {
   const double code = of.number("rate_code", all_rate_codes);
   const std::uint32_t answered =
       code >= 0.0 ? rate_hz_of_code(of.row, static_cast<std::uint8_t>(code)) : 0;
   if (answered != 0) return {1.0 * answered, answered_tolerance};
   const sample_rate_list& rates = of.row.rates;
   if (!rates.is_settable && rates.nominal_hz != 0)
-    return {1.0 * rates.nominal_hz, expected_rate_of(of.row, rates.nominal_hz).tolerance};
+    return expected_rate_of(of.row, rates.nominal_hz);
   const double seen = of.number("sample_rate_hz");
   const auto& [first, second, third] = rates.entries;
   const expected near = nearest({1.0 * first.hz, 1.0 * second.hz, 1.0 * third.hz}, seen);

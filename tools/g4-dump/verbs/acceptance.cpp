@@ -298,6 +298,7 @@ verb make_acceptance_verb() {
           .arguments = {source_argument(*options)},
           .options =
               joined(output_rows(*options), json, time, baud_row(*options), model_row(*options),
+                     all_ports_row(*options),
                      option_rows{file, flag_row("--alone", "Leave out the steps that need a user",
                                                 options->run.is_alone)}),
           .details = acceptance_details,

@@ -150,6 +150,7 @@ int examine(const doctor_options& options) {
   }
   diagnostic_options how;
   how.baud = options.expected.baud;
+  how.probe_all_ports = options.expected.all_ports;
   const source_kind kind = kind_of_source(options.source);
   std::optional<recognised_model> seen;
   how.model = kind != source_kind::simulated ? model_of(options, &seen) : options.expected.model;
@@ -216,7 +217,7 @@ verb make_doctor_verb() {
       .arguments = {source_argument(*options)},
       .options = joined(
           output_rows(*options), json, time, baud_row(*options), model_row(*options),
-          direction_rows(*options),
+          all_ports_row(*options), direction_rows(*options),
           in_group("Filters",
                    {frame_row("--frame",
                               "Of --fov and --ignore; vendor: clockwise from the cable (vendor)",

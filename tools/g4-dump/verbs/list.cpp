@@ -28,6 +28,7 @@ struct list_options {
   common_options common;
   bool probe = false;
   bool all = false;  ///< Also probe ports without the bridge of a G4.
+  bool models = false;
 };
 
 /// A port and, if it was probed, the result.
@@ -51,7 +52,8 @@ result<recognised_lidar> ask_at(const port_info& port, std::uint32_t baud) {
 
 void probe(std::vector<listed_port>& ports, const list_options& options) {
   for (listed_port& each : ports) {
-    if (!options.all && !is_g4_bridge(each.port)) continue;
+    const bool is_probed = is_g4_bridge(each.port) || (options.all && !is_reserved(each.port));
+    if (!is_probed) continue;
     const auto& answer = each.answer.emplace(ask_at(each.port, options.common.expected.baud));
     if (interrupt() != 0) throw interrupted();
     if (!answer) logger::info(in_tool_words(answer.error().message()) + "\n");
@@ -86,16 +88,36 @@ std::vector<std::string> cells_of(const listed_port& listed, bool probed) {
   return cells;
 }
 
-void write_table(const std::vector<listed_port>& ports, bool probed, output& out) {
-  std::vector<std::vector<std::string>> rows{port_columns()};
-  if (probed) rows[0].insert(rows[0].end(), {"ANSWER", "SERIAL", "FIRMWARE", "BAUD", "OR"});
-  rows[0].emplace_back("HOLDER");
-  for (const listed_port& each : ports) rows.push_back(cells_of(each, probed));
+void write_rows(const std::vector<std::vector<std::string>>& rows, output& out) {
   std::vector<std::size_t> widths(rows[0].size());
   for (const auto& row : rows) {
     for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], row[i].size());
   }
   for (const auto& row : rows) out.write(line_of(row, widths));
+}
+
+void write_table(const std::vector<listed_port>& ports, bool probed, output& out) {
+  std::vector<std::vector<std::string>> rows{port_columns()};
+  if (probed) rows[0].insert(rows[0].end(), {"ANSWER", "SERIAL", "FIRMWARE", "BAUD", "OR"});
+  rows[0].emplace_back("HOLDER");
+  for (const listed_port& each : ports) rows.push_back(cells_of(each, probed));
+  write_rows(rows, out);
+}
+
+/// The table of models.
+void write_models(bool as_json, output& out) {
+  std::vector<std::vector<std::string>> rows(1);
+  for (const model& each : models) {
+    nlohmann::ordered_json object;
+    auto& row = rows.emplace_back();
+    for (const auto& [name, text] : facts_of(each)) {
+      if (&each == models.data()) rows[0].emplace_back(name);
+      row.push_back(text);
+      object[std::string(name)] = text;
+    }
+    if (as_json) out.write(json_line(object));
+  }
+  if (!as_json) write_rows(rows, out);
 }
 
 nlohmann::ordered_json object_of(const listed_port& listed) {
@@ -142,6 +164,11 @@ std::vector<listed_port> ports_with_holders() {
 
 int list(const list_options& options) {
   output out(options.common.output);
+  if (options.models) {
+    write_models(options.common.json, out);
+    out.commit();
+    return static_cast<int>(exit_code::ok);
+  }
   std::vector<listed_port> ports = ports_with_holders();
   const bool probed = options.probe || options.all;
   if (probed) probe(ports, options);
@@ -209,17 +236,21 @@ int print_overview() {
 
 verb make_list_verb() {
   const auto options = std::make_shared<list_options>();
-  return {.name = "list",
-          .summary = "List serial ports and the lidars attached to them",
-          .options = joined(
-              flag_row("--probe", "Search a lidar at each port with such a bridge", options->probe),
-              flag_row("--all", "Query every port: sends commands to any device", options->all),
-              json_row(options->common), output_rows(options->common), baud_row(options->common)),
-          .details = list_details,
-          .examples = {{"g4-dump list", "The serial ports"},
-                       {"g4-dump list --probe", "The lidars, their models and baud rates"}},
-          .exits = {0, 2, 3, 4, 5, 6, 7, 8, 10, 11, 130},
-          .run = [options] { return list(*options); }};
+  return {
+      .name = "list",
+      .summary = "List serial ports and the lidars attached to them",
+      .options = joined(
+          flag_row("--probe", "Search a lidar at each port with such a bridge", options->probe),
+          flag_row("--all",
+                   "Query every port but consoles and Bluetooth: sends commands to any device",
+                   options->all),
+          flag_row("--models", "List the models that can be read, and no ports", options->models),
+          json_row(options->common), output_rows(options->common), baud_row(options->common)),
+      .details = list_details,
+      .examples = {{"g4-dump list", "The serial ports"},
+                   {"g4-dump list --probe", "The lidars, their models and baud rates"}},
+      .exits = {0, 2, 3, 4, 5, 6, 7, 8, 10, 11, 130},
+      .run = [options] { return list(*options); }};
 }
 
 }  // namespace g4_tool

@@ -53,13 +53,16 @@ export class Settings {
     this.form.addEventListener('submit', (event) => event.preventDefault());
   }
 
-  /** @param {{name: string, setting_rows?: Row[], settings?: any}[]} lidars  Of a hello. @param {boolean} allowed */
+  /**
+   * @param {{name: string, setting_rows?: Row[], settings?: any, device?: any}[]} lidars  Of a hello.
+   * @param {boolean} allowed
+   */
   use(lidars, allowed) {
-    const key = JSON.stringify(lidars.map((each) => [each.name, each.setting_rows]));
+    const key = JSON.stringify(lidars.map((each) => [each.name, each.setting_rows, each.device?.speed_by]));
     if (key !== this.shown) {
       this.shown = key;
       this.fields.clear();
-      this.form.replaceChildren(...lidars.map((each) => this.#group(each.name, each.setting_rows ?? [])));
+      this.form.replaceChildren(...lidars.map((each) => this.#group(each)));
     }
     for (const field of this.fields.values()) field.disabled = !allowed;
     const note = allowed ? '' : 'Read-only: the server was started without --allow-set.';
@@ -86,8 +89,8 @@ export class Settings {
     write(this.error, message);
   }
 
-  /** @param {string} lidar @param {Row[]} rows @returns {HTMLElement} */
-  #group(lidar, rows) {
+  /** @param {{name: string, setting_rows?: Row[], device?: any}} of @returns {HTMLElement} */
+  #group({ name: lidar, setting_rows: rows = [], device }) {
     const group = make(lidar ? 'fieldset' : 'div');
     if (lidar) group.append(make('legend', lidar));
     for (const row of rows) {
@@ -100,6 +103,7 @@ export class Settings {
       label.append(field);
       group.append(label);
     }
+    if (device?.speed_by) group.append(make('p', `Its speed: ${device.speed_by}.`));
     return group;
   }
 

@@ -274,13 +274,20 @@ option_rows baud_row(common_options& options) {
 }
 
 option_row model_row(common_options& options) {
-  return value_row(
-      "--model", "MODEL", "The model: x4, x2, ... (searched, or as a file shows)",
-      options.expected.model, [](const std::string& word) {
-        const g4lidar::model* const found = g4lidar::model_named(word);
-        if (found != nullptr) return found;
-        throw bad_value(fmt::format("'{}' is not one of {}", word, g4lidar::model_words()));
-      });
+  return value_row("--model", "MODEL", "The model: x4, x2, ... (searched, or as a file shows)",
+                   options.expected.model, [](const std::string& word) {
+                     const g4lidar::model* const found = g4lidar::model_named(word);
+                     if (found != nullptr) return found;
+                     throw bad_value(g4lidar::why_no_model(word));
+                   });
+}
+
+option_row all_ports_row(common_options& options) {
+  option_row row =
+      flag_row("--all-ports", "Without a name: look at all ports, not only at a CP2102",
+               options.expected.all_ports);
+  row.group = "Device";
+  return row;
 }
 
 option_row zero_row(common_options& options) {
@@ -298,7 +305,8 @@ option_rows device_rows(common_options& options) {
       std::ranges::find(rules, options.on_loss, &choices<loss_rule>::value_type::second);
   const std::string help = "If the device is lost; wait: also at the start (" + usual->first + ")";
   return joined(in_group("Device", {choice_row("--on-loss", help.c_str(), options.on_loss, rules)}),
-                baud_row(options), in_group("Device", {model_row(options), zero_row(options)}));
+                baud_row(options), in_group("Device", {model_row(options), zero_row(options)}),
+                all_ports_row(options));
 }
 
 option_row loop_row(bool& into) { return flag_row("--loop", "Start again at the end", into); }

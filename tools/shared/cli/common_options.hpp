@@ -59,6 +59,7 @@ struct expected_device {
   /// What sends the bytes; null: as a file shows, or searched.
   const g4lidar::model* model = nullptr;
   std::optional<g4lidar::zero_angle> zero;  ///< Of --zero-angle.
+  bool all_ports = false;
 };
 
 struct common_options {
@@ -134,9 +135,11 @@ void note_order(scan_order chosen);
 [[nodiscard]] option_rows baud_row(common_options& options);
 /// --model.
 [[nodiscard]] option_row model_row(common_options& options);
+/// --all-ports.
+[[nodiscard]] option_row all_ports_row(common_options& options);
 /// --zero-angle.
 [[nodiscard]] option_row zero_row(common_options& options);
-/// --on-loss with the present value of `options` as default, --baud and --model.
+/// --on-loss with the present value of `options` as default, --baud, --model, --zero-angle, --all-ports.
 [[nodiscard]] option_rows device_rows(common_options& options);
 
 }  // namespace g4_tool

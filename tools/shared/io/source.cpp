@@ -239,6 +239,7 @@ lidar_options options_for(const common_options& options, lidar_options how) {
   if (options.expected.baud != 0) how.baud = options.expected.baud;
   refuse_options_of_others(how);
   how.zero_angle = options.expected.zero;
+  how.probe_all_ports = options.expected.all_ports;
   how.reconnect = options.on_loss != loss_rule::exit;
   // A file that is missing is not waited for.
   if (options.on_loss == loss_rule::wait && !is_file_name(options.source))
@@ -258,17 +259,12 @@ lidar_options options_for(const common_options& options, lidar_options how) {
 }
 
 failure failure_of(const common_options& options, const g4lidar::error& why) {
-  const std::string_view name = options.source;
-  if (why.code() != g4lidar::problem::no_port || name.empty() || name.starts_with("/dev/") ||
-      name.starts_with("serial:") || name.starts_with("usb:")) {
+  if (why.detail() != error_detail::missing_path || !is_file_name(options.source))
     return failure(why, why.doing() == task::reading);
-  }
-  // Neither a port nor a file: the message depends on what it looks like.
-  const bool is_file = is_file_name(name);
   return failure(
-      is_file ? exit_code::bad_file : exit_code::no_device,
-      fmt::format("there is no {} {}. Check the name; g4-dump list shows the serial ports.",
-                  is_file ? "file" : "port or file", in_quotes(options.source)),
+      exit_code::bad_file,
+      fmt::format("there is no file {}. Check the name; g4-dump list shows the serial ports.",
+                  in_quotes(options.source)),
       name_of(why.code()));
 }
 

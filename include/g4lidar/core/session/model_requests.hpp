@@ -70,7 +70,7 @@ namespace g4lidar {
 [[nodiscard]] constexpr bool may_be_frequency(const response_view& heard,
                                               const model& which) noexcept {
   const auto chz = heard.as_frequency_chz();
-  const auto& [min_dhz, max_dhz, offset_chz, ct_offset] = which.frequency;
+  const auto& [min_dhz, max_dhz, offset_chz, ct_offset, pin] = which.frequency;
   const int beyond_chz = offset_chz < 0 ? -offset_chz : 0;
   return chz && *chz >= 10 * min_dhz && *chz <= 10 * max_dhz + beyond_chz;
 }
