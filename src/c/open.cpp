@@ -121,6 +121,8 @@ int take_lidar_options(const g4lidar_options* given, opening& into, g4lidar_erro
   into.how.is_cancelled = question_of(taken);
   into.how.baud = taken.baud;
   into.how.probe_all_ports = taken.probe_all_ports;
+  into.how.listen_only = taken.listen_only;
+  into.how.insist_on_model = taken.insist_on_model;
   into.how.reconnect = taken.reconnect;
   into.how.partial_scans = taken.partial_scans;
   into.how.tuning.transport_delay = std::chrono::nanoseconds(taken.transport_delay_ns);

@@ -97,7 +97,11 @@ typedef struct g4lidar_options {
   /** Where `device` is no name: whether ports without the USB bridge of a G4 are looked at, too, as with
    *  g4lidar_find_options.probe_all_ports. */
   bool probe_all_ports;
-  uint8_t last_reserved[7]; /**< 0. */
+  /** Not a byte is sent: settings and requests are refused. */
+  bool listen_only;
+  /** `model` is right, whatever number the lidar reports. */
+  bool insist_on_model;
+  uint8_t last_reserved[5]; /**< 0. */
 } g4lidar_options;
 
 /** Sets the defaults; `size` is sizeof(g4lidar_options). */

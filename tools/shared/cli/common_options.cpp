@@ -274,8 +274,10 @@ option_rows baud_row(common_options& options) {
 }
 
 option_row model_row(common_options& options) {
-  return value_row("--model", "MODEL", "The model: x4, x2, ... (searched, or as a file shows)",
-                   options.expected.model, [](const std::string& word) {
+  return value_row("--model", "MODEL", "x4, x2, ...; x4! insists (searched, or as a file shows)",
+                   options.expected.model, [&insists = options.expected.insists](std::string word) {
+                     insists = word.ends_with('!');
+                     if (insists) word.pop_back();
                      const g4lidar::model* const found = g4lidar::model_named(word);
                      if (found != nullptr) return found;
                      throw bad_value(g4lidar::why_no_model(word));
@@ -306,6 +308,8 @@ option_rows device_rows(common_options& options) {
   const std::string help = "If the device is lost; wait: also at the start (" + usual->first + ")";
   return joined(in_group("Device", {choice_row("--on-loss", help.c_str(), options.on_loss, rules)}),
                 baud_row(options), in_group("Device", {model_row(options), zero_row(options)}),
+                in_group("Device", {flag_row("--listen", "Only listen: not a byte is sent",
+                                             options.expected.listens)}),
                 all_ports_row(options));
 }
 

@@ -59,6 +59,8 @@ struct expected_device {
   /// What sends the bytes; null: as a file shows, or searched.
   const g4lidar::model* model = nullptr;
   std::optional<g4lidar::zero_angle> zero;  ///< Of --zero-angle.
+  bool insists = false;  ///< The model is certain: --model WORD!
+  bool listens = false;  ///< Not a byte is sent.
   bool all_ports = false;
 };
 
@@ -139,7 +141,7 @@ void note_order(scan_order chosen);
 [[nodiscard]] option_row all_ports_row(common_options& options);
 /// --zero-angle.
 [[nodiscard]] option_row zero_row(common_options& options);
-/// --on-loss with the present value of `options` as default, --baud, --model, --zero-angle, --all-ports.
+/// --on-loss with the present value of `options` as default, --baud, --model, --zero-angle, --listen, --all-ports.
 [[nodiscard]] option_rows device_rows(common_options& options);
 
 }  // namespace g4_tool

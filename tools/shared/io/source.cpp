@@ -240,6 +240,8 @@ lidar_options options_for(const common_options& options, lidar_options how) {
   refuse_options_of_others(how);
   how.zero_angle = options.expected.zero;
   how.probe_all_ports = options.expected.all_ports;
+  how.insist_on_model = options.expected.insists;
+  how.listen_only = options.expected.listens;
   how.reconnect = options.on_loss != loss_rule::exit;
   // A file that is missing is not waited for.
   if (options.on_loss == loss_rule::wait && !is_file_name(options.source))
