@@ -187,11 +187,6 @@ class G4LIDAR_API lidar {
   std::unique_ptr<driver> driver_;
 };
 
-/// The candidates of recognition().
-[[nodiscard]] inline std::span<const model* const> candidates_of(const lidar& of) noexcept {
-  return of.recognition().candidates;
-}
-
 /// A lidar in an event loop of the program, which waits for other things, too: poll native_handle()
 /// for reading until next_deadline(), then call process(), which never waits, or next_scan(0ms) until
 /// it times out. *Single thread*: that of the lidar.

@@ -239,7 +239,7 @@ void bind_reading(Class& made) {
       .def_prop_ro(
           "candidates",
           [](live_lidar& on) {
-            return on.look([](lidar& device) { return words_of(candidates_of(device)); });
+            return on.look([](lidar& device) { return words_of(device.recognition().candidates); });
           },
           nb::sig("def candidates(self) -> list[str]"),
           "All models that send such bytes; it is read as the first. One alone if it was named, or "

@@ -19,7 +19,7 @@ while_scanning allowed(bool interrupt) {
 }
 
 const model& model_of(live_lidar& on) {
-  return *on.look([](lidar& device) { return candidates_of(device).front(); });
+  return *on.look([](lidar& device) { return device.recognition().model; });
 }
 
 template <class Number>

@@ -40,7 +40,7 @@ TEST_P(OpenAtTheOtherRate, IsFound) {
     const std::string with_model = served->path() + "?model=" + std::string(GetParam());
     auto opened = lidar::open(with_model);
     ASSERT_TRUE(opened) << baud << ": " << opened.error().message();
-    EXPECT_EQ(candidates_of(*opened).size(), 1U);
+    EXPECT_EQ(opened->recognition().candidates.size(), 1U);
     ASSERT_TRUE(opened->start());
     const auto got = opened->next_scan(patience);
     ASSERT_TRUE(got) << baud << ": " << got.error().message();

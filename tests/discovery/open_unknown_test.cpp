@@ -94,7 +94,7 @@ TEST(OpenCandidates, AreAllThatSendTheSame) {
   ASSERT_TRUE(sim::use_model(options, "x2"));
   auto served = sim::background_pty::open(sim::device(sim::built_in_world(), options));
   ASSERT_TRUE(served);
-  const auto words_of = [](const lidar& of) { return model_words(candidates_of(of)); };
+  const auto words_of = [](const lidar& of) { return model_words(of.recognition().candidates); };
   {
     const auto found = lidar::open(served->path());
     ASSERT_TRUE(found) << found.error().message();
@@ -116,8 +116,8 @@ TEST_P(OpenLeftScanning, IsStoppedNamedAndScansAsItsModel) {
   ASSERT_TRUE(served);
   auto opened = lidar::open(served->path());
   ASSERT_TRUE(opened) << opened.error().message();
-  ASSERT_EQ(candidates_of(*opened).size(), 1U);
-  EXPECT_EQ(candidates_of(*opened).front()->word, GetParam());
+  ASSERT_EQ(opened->recognition().candidates.size(), 1U);
+  EXPECT_EQ(opened->recognition().candidates.front()->word, GetParam());
   EXPECT_EQ(opened->information().model, options.info.model);
   const auto event = opened->next_event();
   ASSERT_TRUE(event);

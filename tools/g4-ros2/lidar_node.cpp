@@ -106,7 +106,7 @@ void lidar_node::show_model(const model& which) {
 }
 
 void lidar_node::on_open(g4lidar::lidar& device) {
-  show_model(*candidates_of(device).front());
+  show_model(*device.recognition().model);
   diagnostics_.name_models(device.recognition());
   if (is_played_) {
     feed_.follow(*device.player());

@@ -73,7 +73,7 @@ void served_lidar::on_open(g4lidar::lidar& device) {
   {
     const std::lock_guard lock(mutex_);
     settings_ = std::move(settings);
-    model_ = candidates_of(device).front();
+    model_ = device.recognition().model;
   }
   listener_.on_lidar_change(true);
 }
@@ -133,7 +133,7 @@ void served_lidar::execute(g4lidar::lidar* lidar, const std::string& word,
   if (lidar == nullptr) return done("the lidar is not connected");
   std::optional<setting_change> read;
   try {
-    read = change_of(word, candidates_of(*lidar).front());
+    read = change_of(word, lidar->recognition().model);
   } catch (const bad_value& reason) {
     return done(reason.what());
   }

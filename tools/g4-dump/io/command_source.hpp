@@ -26,7 +26,7 @@ class command_source {
   [[nodiscard]] g4lidar::lidar& lidar() noexcept { return source_.lidar(); }
   /// The models between which the bytes of the device do not decide, that as which it is read first.
   [[nodiscard]] std::span<const g4lidar::model* const> candidates() noexcept {
-    return candidates_of(lidar());
+    return lidar().recognition().candidates;
   }
   /// Whether the device was scanning.
   [[nodiscard]] bool was_scanning() const noexcept { return was_scanning_; }

@@ -106,7 +106,7 @@ void report_events(g4lidar::lidar& lidar) {
   while (const auto event = lidar.next_event()) {
     const bool is_loss = event->what == lidar_event::kind::lost;
     if (is_loss && event->reason == g4lidar::problem::end_of_input) continue;  // the end of a file
-    const g4lidar::model& which = *candidates_of(lidar).front();
+    const g4lidar::model& which = *lidar.recognition().model;
     if (event->what == lidar_event::kind::no_zero_angle) {
       report_missing_zero(which);
       continue;

@@ -106,7 +106,7 @@ int set(const set_options& options) {
   const std::vector<setting_change> changes = changes_of(options);
   output out("-");
   command_source source(options, task::configuring);
-  check(changes, *candidates_of(source.lidar()).front());
+  check(changes, *source.lidar().recognition().model);
   if (!options.json) write_row(out, "NAME", "BEFORE", "AFTER");
   for (const setting_change& each : changes) {
     if (interrupt() != 0) return 128 + interrupt();

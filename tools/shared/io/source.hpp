@@ -64,7 +64,7 @@ class opened_source {
   }
 
   /// The model as which the lidar is read.
-  [[nodiscard]] const g4lidar::model& model() noexcept { return *candidates_of(lidar()).front(); }
+  [[nodiscard]] const g4lidar::model& model() noexcept { return *lidar().recognition().model; }
 
   /// The simulated lidar that is read, with the robot that carries it; null for every other source.
   [[nodiscard]] const sim::simulated_source* simulation() const noexcept { return simulation_; }

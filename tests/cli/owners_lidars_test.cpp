@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: MIT
+// Lidars of owners that are not as the table says: each is read, and a warning states what was seen.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "program.hpp"
+
+namespace {
+
+using cli::outcome;
+using cli::run;
+using cli::simulator;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+class OwnersLidar : public cli::scratch {
+ protected:
+  void serve(const std::vector<std::string>& options) {
+    served_.reset();
+    served_ = std::make_unique<simulator>(port_, options);
+  }
+  const std::string port_ = path("lidar");
+  std::unique_ptr<simulator> served_;
+};
+
+TEST_F(OwnersLidar, SamplesOverruleTheNumber_AndTheWordOverrulesBoth) {
+  serve({"--model", "t-mini-plus-sh", "--device", "model_id=151"});
+  const outcome unnamed = run({"scan", "-n", "2", port_});
+  EXPECT_EQ(unnamed.code, 0) << unnamed.err;
+  EXPECT_THAT(unnamed.err,
+              HasSubstr("reports the number 151, that of a T-mini Plus. It is read as a "
+                        "T-mini Plus SH"));
+  EXPECT_THAT(unnamed.out, HasSubstr("whole"));
+  const outcome named = run({"scan", "-n", "2", "--model", "t-mini-plus-sh", port_});
+  EXPECT_EQ(named.code, 0) << named.err;
+  EXPECT_THAT(named.err, HasSubstr("reports the number 151"));
+  const outcome wrong = run({"scan", "-n", "2", "--model", "t-mini-plus", port_});
+  EXPECT_NE(wrong.code, 0);
+  EXPECT_THAT(wrong.err, HasSubstr("samples of 4 bytes, and a T-mini Plus has 3"));
+  EXPECT_THAT(wrong.err, Not(HasSubstr("power supply")));
+}
+
+TEST_F(OwnersLidar, ANumberThatNoModelHas_IsReadAsItWasNamed_OrAsItsSamplesShow) {
+  serve({"--model", "t-mini-plus", "--device", "model_id=153"});
+  for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{
+           {"scan", "-n", "2", port_}, {"scan", "-n", "2", "--model", "t-mini-plus", port_}}) {
+    const outcome done = run(words);
+    EXPECT_EQ(done.code, 0) << done.err;
+    EXPECT_THAT(done.err, HasSubstr("153, which no known model has"));
+    EXPECT_THAT(done.err, HasSubstr("Please report it"));
+    EXPECT_THAT(done.out, HasSubstr("whole"));
+  }
+}
+
+TEST_F(OwnersLidar, ARateThatItsModelDoesNotHave_IsFound) {
+  serve({"--model", "s2-intensity", "--device", "baud=153600"});
+  for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{
+           {"scan", "-n", "2", port_}, {"scan", "-n", "2", "--model", "s2-intensity", port_}}) {
+    const outcome done = run(words);
+    EXPECT_EQ(done.code, 0) << done.err;
+    EXPECT_THAT(done.err, HasSubstr("runs at 153600 baud"));
+  }
+}
+
+TEST_F(OwnersLidar, OfWhichOnlyTheDataWireIsConnected_IsRead) {
+  serve({"--model", "t-mini-plus", "--fault", "scanning", "--fault", "deaf"});
+  for (const std::vector<std::string>& words :
+       std::vector<std::vector<std::string>>{{"scan", "-n", "2", port_},
+                                             {"scan", "-n", "2", "--model", "t-mini-plus", port_},
+                                             {"scan", "-n", "2", "--listen", port_}}) {
+    const outcome done = run(words);
+    EXPECT_EQ(done.code, 0) << done.err;
+    EXPECT_THAT(done.out, HasSubstr("whole"));
+    EXPECT_THAT(done.err, HasSubstr("answers no command"));
+  }
+}
+
+TEST_F(OwnersLidar, TheUserMayInsistOnTheModel) {
+  serve({"--model", "g4"});
+  const outcome refused = run({"scan", "-n", "2", "--model", "g5", port_});
+  EXPECT_NE(refused.code, 0);
+  EXPECT_THAT(refused.err, HasSubstr("--model WORD!"));
+  const outcome done = run({"scan", "-n", "2", "--model", "g5!", port_});
+  EXPECT_EQ(done.code, 0) << done.err;
+  EXPECT_THAT(done.err, HasSubstr("reports the number 5, that of a G4. It is read as a G5"));
+}
+
+}  // namespace
