@@ -191,7 +191,7 @@ def test_the_offset_of_zero(tmp_path: Path) -> None:
         g4lidar.decode(data, model="tg15", zero_angle=361.0)
 
 
-def test_a_lidar_is_listened_to_without_a_word() -> None:
+def test_a_lidar_that_is_listened_to_gets_no_byte() -> None:
     simulator = g4lidar.Simulator(model="t-mini-plus", faults=["scanning"])
     with g4lidar.open(simulator, listen_only=True) as lidar:
         lidar.start()
@@ -204,7 +204,7 @@ def test_a_lidar_is_listened_to_without_a_word() -> None:
     assert known["contradictions"] == ""
 
 
-def test_what_contradicts_the_model_is_said() -> None:
+def test_what_contradicts_the_model_is_reported() -> None:
     with g4lidar.open("sim:?model=t-mini-plus&model_id=153") as lidar:
         known = lidar.recognition
     assert known["number"] == 153

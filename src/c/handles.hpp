@@ -41,7 +41,7 @@ struct g4lidar_lidar {
   std::int64_t wall_ahead_ns = 0;           // of virtual time
   std::string name;
   g4lidar_identity identity{};
-  std::string candidates;      // of `recognised`, as the next
+  std::string candidates;  // of `recognised`, as the next
   std::string contradictions;
   g4lidar_recognition recognised{};
   g4lidar_scan scan{};

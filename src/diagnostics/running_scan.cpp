@@ -59,11 +59,11 @@ bool running_scan::is_current(std::int64_t now_ns) const noexcept {
 void running_scan::sent(bytes data, std::int64_t now_ns, std::int64_t silence_ns) {
   if (data.size() < 2 || data[0] != command_start) return;
   asked_ = static_cast<command>(data[1]);
-  if (phase_ != phase::rests && !is_current(now_ns)) has_rebooted_ |= may_have_booted_;
+  if (phase_ != phase::rests && !is_current(now_ns)) happened_.reboot |= may_have_booted_;
   switch (*asked_) {
     case command::start:
       if (is_current(now_ns)) return;
-      has_stalled_ |= phase_ == phase::runs && silence_ns >= arrival_statistics::stall_ns;
+      happened_.stall |= phase_ == phase::runs && silence_ns >= arrival_statistics::stall_ns;
       return enter(phase::starts);
     case command::stop:
     case command::forced_stop:

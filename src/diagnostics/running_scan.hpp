@@ -54,9 +54,9 @@ class running_scan {
     return static_cast<double>(detail::saturating_sub(time_ns_, begin_.window_ns)) / 1e9;
   }
   /// Whether the device has booted during a scan since the last call.
-  [[nodiscard]] bool take_reboot() noexcept { return std::exchange(has_rebooted_, false); }
+  [[nodiscard]] bool take_reboot() noexcept { return std::exchange(happened_.reboot, false); }
   /// The same for a scan that was silent when it was started again.
-  [[nodiscard]] bool take_stall() noexcept { return std::exchange(has_stalled_, false); }
+  [[nodiscard]] bool take_stall() noexcept { return std::exchange(happened_.stall, false); }
   /// Whether many bytes have arrived that belong to nothing, also while no scan is wanted.
   [[nodiscard]] bool has_garbage() const noexcept { return garbage_ > garbage_bytes(*which_); }
 
@@ -68,6 +68,11 @@ class running_scan {
   /// A file that is silent for this time was paused: a driver would have ended a scan that is silent so long.
   static constexpr std::int64_t pause_of_file_ns = 1'000 * ms;
 
+  /// Since they were asked for.
+  struct incidents {
+    bool reboot = false;
+    bool stall = false;
+  };
   /// When they began.
   struct begins {
     std::int64_t phase_ns = 0;   // with its first packet
@@ -103,8 +108,7 @@ class running_scan {
   begins begin_;
   std::uint64_t garbage_ = 0;  // bytes since the last packet or response
   std::uint64_t looked_ = 0;   // samples at the last check of the speed
-  bool has_rebooted_ = false;
-  bool has_stalled_ = false;
+  incidents happened_;
 };
 
 }  // namespace g4lidar

@@ -8,11 +8,11 @@
 #include <string>
 #include <vector>
 
-#include "driver/unrecognised_bytes.hpp"
 #include "g4lidar/core/layout_recogniser.hpp"
 #include "g4lidar/discovery.hpp"
 #include "model_choice.hpp"
 #include "survey/other_makers.hpp"
+#include "survey/unrecognised_bytes.hpp"
 
 namespace g4lidar {
 

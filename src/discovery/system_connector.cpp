@@ -83,8 +83,8 @@ result<std::unique_ptr<connector>> system_connector::make(std::string_view devic
 }
 
 result<std::unique_ptr<connector>> system_connector::find(std::string_view device,
-                                                          const search_options& known,
-                                                          bool always, bool probes_all_ports) {
+                                                          const search_options& known, bool always,
+                                                          bool probes_all_ports) {
   const model* const named = known.model;
   const std::uint32_t usual_baud = named != nullptr ? named->bauds[0] : g4_model.bauds[0];
   const std::uint32_t first_baud = known.baud != 0 ? known.baud : usual_baud;

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "g4lidar/core/stream_parser.hpp"
+#include "sample_size_watch.hpp"
 
 namespace g4lidar {
 
@@ -21,6 +22,7 @@ class event_reader {
     input_ = reading;
     arrival_ns_ = arrival_ns;
     events_ = 0;
+    if (sizes_) watch_sizes();
   }
   /// No more bytes follow: the unparsed bytes are discarded, and the next calls of next() parse the
   /// held bytes again.
@@ -55,6 +57,12 @@ class event_reader {
 
   /// The packets that follow are of another format. Bytes that are held are dropped.
   void become(sample_format format) noexcept { parser_ = stream_parser(format); }
+  /// A stream begins whose samples should have this size: until they have, it is watched.
+  void expect(std::size_t sample_bytes) noexcept { sizes_.emplace(sample_bytes); }
+  /// The size of the samples since expect(), if it is another one, and certain; else 0.
+  [[nodiscard]] std::size_t other_sample_bytes() const noexcept {
+    return sizes_ ? sizes_->other() : 0;
+  }
   /// See stream_parser::set_layout().
   void set_layout(sample_layout layout) noexcept { parser_.set_layout(layout); }
 
@@ -70,6 +78,11 @@ class event_reader {
   [[nodiscard]] std::uint64_t bytes_parsed() const noexcept { return bytes_; }
 
  private:
+  void watch_sizes() noexcept {
+    sizes_->take(input_);
+    if (sizes_->is_settled()) sizes_.reset();
+  }
+
   stream_parser parser_;
   bytes input_;
   std::int64_t arrival_ns_ = 0;
@@ -77,6 +90,7 @@ class event_reader {
   std::uint32_t events_ = 0;
   bool is_cutting_ = false;
   std::uint64_t bytes_ = 0;
+  std::optional<sample_size_watch> sizes_;
 };
 
 }  // namespace g4lidar

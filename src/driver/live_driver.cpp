@@ -43,7 +43,7 @@ result<void> live_driver::round(std::int64_t deadline_ns) {
   if (auto same = follow_samples(); !same) return same;
   if (stream_.reported().take_news()) {
     const auto& who = stream_.reported().who();
-    if (information_.is_known() && who != information_) module_ = who;
+    if (information_.is_known() && who != information_) recognised_.module = who;
   }
   // An event loop may not call again before bytes arrive: everything must be sent now.
   if (auto served = serve(); !served) return tl::unexpected(served.error());

@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "live_source.hpp"
 
-#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <new>
 #include <utility>
 
-#include "discovery/model_choice.hpp"
 #include "outcome_error.hpp"
 
 namespace g4lidar {
@@ -140,19 +138,17 @@ bool live_source::refuses(const device_information& who) const noexcept {
 
 /// The samples have another size than those of the model: they decide, unless the user does.
 result<void> live_source::follow_samples() {
-  const std::size_t size = pipeline_.other_sample_bytes();
+  const std::size_t size = pipeline_.input().other_sample_bytes();
   if (size == 0) return {};
-  if (recognised_.is_stated())
-    return tl::unexpected(other_samples_error(size, *options_.model, connection_.name()));
+  const bool answers = !options_.listen_only && options_.model->link == link_kind::two_way;
   try {
-    auto fitting = models_that_fit({.baud = connection_.on().baud(),
-                                    .sample_bytes = size,
-                                    .answers = stream_.listens() ? presence::no : presence::yes});
-    if (fitting.empty())
+    const model* const found = recognised_.is_stated()
+                                   ? nullptr
+                                   : recognised_.follow(size, connection_.on().baud(), answers);
+    if (found == nullptr)
       return tl::unexpected(other_samples_error(size, *options_.model, connection_.name()));
-    recognised_.become(std::move(fitting));
-    options_.model = recognised_.get().model;
-    stream_.become(*options_.model);
+    options_.model = found;
+    stream_.become(*found);
   } catch (const std::bad_alloc&) {
     return failure(task::reading, problem::system, connection_.name(), ENOMEM);
   }

@@ -147,7 +147,7 @@ result<void> live_stream::set_motor(bool on) {
 }
 
 void live_stream::become(const model& which) {
-  talk().become(which);
+  talk().reset(&which, true);
   reported_ = identity_reader(which, link_.listens());
   motor_ = which.motor;
   sample_rate_hz_ = first_rate_hz(which);

@@ -15,7 +15,7 @@
 #include "point_pipeline.hpp"
 #include "receiver.hpp"
 #include "spin_up.hpp"
-#include "unrecognised_bytes.hpp"
+#include "survey/unrecognised_bytes.hpp"
 
 namespace g4lidar {
 
@@ -37,8 +37,6 @@ class live_stream {
   [[nodiscard]] session& talk() noexcept { return link_.talk(); }
   [[nodiscard]] const session& talk() const noexcept { return link_.talk(); }
 
-  /// Whether nothing is sent to the device.
-  [[nodiscard]] bool listens() const noexcept { return link_.listens(); }
   /// What the device has reported unasked.
   [[nodiscard]] identity_reader& reported() noexcept { return reported_; }
   /// What was received and sent since the connection was opened, or since begin_request().

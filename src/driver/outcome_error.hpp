@@ -15,7 +15,7 @@
 #include "g4lidar/error.hpp"
 #include "g4lidar/setting_table.hpp"
 #include "live_stage.hpp"
-#include "unrecognised_bytes.hpp"
+#include "survey/unrecognised_bytes.hpp"
 
 namespace g4lidar {
 

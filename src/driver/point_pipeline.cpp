@@ -7,12 +7,13 @@ namespace g4lidar {
 
 const event* point_pipeline::next() noexcept {
   const bool has_bytes = !input_.unparsed().empty();
-  if (sizes_ && has_bytes) watch_sizes();
   const event* const found = input_.next();
   if (found != nullptr) {
     stream_counts_.add(*found);
     if (const auto* const heard = std::get_if<response_view>(found)) {
-      learn(*heard);
+      const auto stated = replies_.take(*heard, decoder_.like());
+      if (stated.firmware) identified(*stated.firmware);
+      if (stated.zero) zero().set(*stated.zero, zero_offset::known_by::device);
     } else {
       replies_.pass();
     }
@@ -20,19 +21,6 @@ const event* point_pipeline::next() noexcept {
     decoder_.seen(input_.held(), input_.arrival_ns());
   }
   return found;
-}
-
-void point_pipeline::learn(const response_view& heard) noexcept {
-  const auto stated = replies_.take(heard, decoder_.like());
-  if (stated.firmware) identified(*stated.firmware);
-  if (stated.zero) zero().set(*stated.zero, zero_offset::known_by::device);
-}
-
-/// Once for the bytes of a read.
-void point_pipeline::watch_sizes() noexcept {
-  if (!delivers_ || input_.events_of_reading() > 0 || input_.current() != nullptr) return;
-  sizes_->take(input_.unparsed());
-  if (sizes_->is_settled()) sizes_.reset();
 }
 
 void point_pipeline::become(const model& which, std::uint32_t baud) {
@@ -117,7 +105,7 @@ void point_pipeline::begin(std::uint32_t sample_rate_hz) noexcept {
   decoder_.begin(sample_rate_hz);
   stream_counts_.crc = {};
   assembler_.set_sample_rate(sample_rate_hz);
-  sizes_.emplace(sample_size(which_->samples.layout));
+  input_.expect(sample_size(which_->samples.layout));
 }
 
 void point_pipeline::end() noexcept {

@@ -22,7 +22,6 @@
 #include "g4lidar/core/sensor_clock.hpp"
 #include "g4lidar/core/stream_counter.hpp"
 #include "g4lidar/lidar.hpp"
-#include "sample_size_watch.hpp"
 #include "timed_decoder.hpp"
 
 namespace g4lidar {
@@ -147,10 +146,6 @@ class point_pipeline {
   void sent(bytes command) noexcept { replies_.sent(command); }
   /// Packets are read as the firmware of this device sends them.
   void identified(const device_information& who) noexcept;
-  /// The size of the samples since begin(), if it is not that of the model, and certain; else 0.
-  [[nodiscard]] std::size_t other_sample_bytes() const noexcept {
-    return sizes_ ? sizes_->other() : 0;
-  }
   /// The bytes that follow are those of a lidar like `which`, whatever the size of its samples: a new stream of points
   /// begins with the usual sample rate. Only if is_empty(). *Allocates.*
   void become(const model& which, std::uint32_t baud);
@@ -201,10 +196,8 @@ class point_pipeline {
   [[nodiscard]] lidar_counts counts() const noexcept;
 
  private:
-  void learn(const response_view& heard) noexcept;
   void add(packet_view packet) noexcept;
   void keep(const scan& found) noexcept;
-  void watch_sizes() noexcept;
 
   const model* which_;  // as given, whatever the firmware
   bool partial_scans_;
@@ -222,7 +215,6 @@ class point_pipeline {
   lidar_counts counts_;
   std::uint64_t points_ = 0;  // decoded
   stream_counter stream_counts_;
-  std::optional<sample_size_watch> sizes_;  // until they are as expected
 };
 
 }  // namespace g4lidar

@@ -3,7 +3,6 @@
 
 #include <utility>
 
-#include "discovery/model_choice.hpp"
 #include "error_context.hpp"
 #include "g4lidar/recording/recorded_device.hpp"
 
@@ -13,12 +12,33 @@ namespace {
 /// For a recording of raw bytes: what is added to the angles of the points that follow.
 recorded_event event_of(recorded_event::kind what, std::int64_t now_ns, connection& from,
                         std::uint32_t sample_rate_hz, std::optional<zero_angle> zero) {
-  recorded_event made{.what = what, .time_ns = now_ns};
-  made.baud = from.on().baud();
-  made.sample_rate_hz = sample_rate_hz;
-  made.name = from.name();
-  made.zero = zero;
-  return made;
+  return {.what = what,
+          .baud = from.on().baud(),
+          .sample_rate_hz = sample_rate_hz,
+          .time_ns = now_ns,
+          .name = from.name(),
+          .zero = zero};
+}
+
+/// Whether the event happened when this much of the read had been processed.
+bool is_here(const recorded_event& what, const event_reader& input) noexcept {
+  switch (what.what) {
+    case recorded_event::kind::begun:
+    case recorded_event::kind::held:
+    case recorded_event::kind::cut:
+      return input.unparsed().size() <= what.unparsed && input.events_of_reading() >= what.events;
+    case recorded_event::kind::sent:
+    case recorded_event::kind::state:
+    case recorded_event::kind::odometry:
+    case recorded_event::kind::dtr_low:
+    case recorded_event::kind::dtr_high:
+      return true;  // the place does not matter
+    case recorded_event::kind::opened:
+    case recorded_event::kind::closed:
+    case recorded_event::kind::gap:
+      break;
+  }
+  return false;  // after the complete read
 }
 
 }  // namespace
@@ -145,19 +165,15 @@ result<void> replay_player::advance(std::int64_t deadline_ns) {
 
 /// The bytes are read as those of another model if their samples have another size, as the driver did that recorded them.
 void replay_player::follow_samples() {
-  const std::size_t size = pipeline_.other_sample_bytes();
+  const std::size_t size = pipeline_.input().other_sample_bytes();
   const recognition now = recognised_.get();
   if (size == 0 || now.by == known_by::user) return;
-  const bool answers = now.model->link == link_kind::two_way;
-  auto fitting = models_that_fit({.baud = connection_.on().baud(),
-                                  .sample_bytes = size,
-                                  .answers = answers ? presence::yes : presence::no});
-  if (fitting.empty()) return;
-  recognised_.become(std::move(fitting));
-  const model& which = *recognised_.get().model;
-  stated_.identity = identity_reader(which, true);
-  sample_rate_hz_ = first_rate_hz(which);
-  pipeline_.become(which, connection_.on().baud());
+  const std::uint32_t baud = connection_.on().baud();
+  const model* const found = recognised_.follow(size, baud, now.model->link == link_kind::two_way);
+  if (found == nullptr) return;
+  stated_.identity = identity_reader(*found, true);
+  sample_rate_hz_ = first_rate_hz(*found);
+  pipeline_.become(*found, baud);
   report(lidar_event::kind::other_number);
 }
 
@@ -186,11 +202,10 @@ bool replay_player::parse_bytes() {
       follow_delivery();
       stated_.identity.take(*found);
       if (stated_.identity.take_news()) {
-        // NOLINTNEXTLINE(bugprone-unchecked-optional-access): there is news
-        if (!information_.is_known()) information_ = *stated_.identity.who();
+        const device_information who = stated_.identity.who().value_or(device_information{});
+        if (!information_.is_known()) information_ = who;
         if (stated_.identity.has_other_number()) {
-          // NOLINTNEXTLINE(bugprone-unchecked-optional-access): there is news
-          recognised_.set_device(stated_.identity.who()->model, 0);
+          recognised_.set_device(who.model, 0);
           report(lidar_event::kind::other_number);
         }
       }
@@ -198,11 +213,9 @@ bool replay_player::parse_bytes() {
         stated_.record(
             event_of(recorded_event::kind::state, now_ns(), connection_, sample_rate_hz_, zero));
       }
-      const bool makes_points = pipeline_.delivers() && std::get_if<packet_view>(found) != nullptr;
-      if (makes_points && !std::exchange(stated_.is_zero_judged, true) &&
-          pipeline_.decoder().lacks_zero()) {
-        report(lidar_event::kind::no_zero_angle);
-      }
+      const bool makes_points = pipeline_.delivers() && std::holds_alternative<packet_view>(*found);
+      const bool is_first = makes_points && !std::exchange(stated_.is_zero_judged, true);
+      if (is_first && pipeline_.decoder().lacks_zero()) report(lidar_event::kind::no_zero_angle);
     } else if (!play_events(true)) {
       return false;
     }
@@ -226,35 +239,14 @@ void replay_player::follow_delivery() {
   pipeline_.begin(sample_rate_hz_);
 }
 
-/// Whether the event happened when this much of the read had been processed.
-bool replay_player::is_here(const recorded_event& what) const noexcept {
-  switch (what.what) {
-    case recorded_event::kind::begun:
-    case recorded_event::kind::held:
-    case recorded_event::kind::cut:
-      return pipeline_.input().unparsed().size() <= what.unparsed &&
-             pipeline_.input().events_of_reading() >= what.events;
-    case recorded_event::kind::sent:
-    case recorded_event::kind::state:
-    case recorded_event::kind::odometry:
-    case recorded_event::kind::dtr_low:
-    case recorded_event::kind::dtr_high:
-      return true;  // the place does not matter
-    case recorded_event::kind::opened:
-    case recorded_event::kind::closed:
-    case recorded_event::kind::gap:
-      break;
-  }
-  return false;  // after the complete read
-}
-
 /// Repeats the recorded action of this place, or all actions before the next read. Where an
 /// unfinished packet was cut, the resulting events come first. Returns whether anything was done.
 bool replay_player::play_events(bool all) {
   bool any = false;
   while (source_ != nullptr) {
     if (!next_.event) next_.event = source_->next_event();
-    if (!next_.event || (!all && (next_.is_cut || !is_here(*next_.event)))) return any;
+    if (!next_.event || (!all && (next_.is_cut || !is_here(*next_.event, pipeline_.input()))))
+      return any;
     const auto what = next_.event->what;
     const bool ends_here = what == recorded_event::kind::cut;
     const bool cuts =

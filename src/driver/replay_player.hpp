@@ -85,7 +85,6 @@ class replay_player final : public scan_source {
   void follow_delivery();
   void report_long_pause();
   [[nodiscard]] bool play_events(bool all);
-  [[nodiscard]] bool is_here(const recorded_event& what) const noexcept;
   void play(const recorded_event& what);
 
   played_file* file_ = nullptr;              // null: a pipe

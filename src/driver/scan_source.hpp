@@ -13,9 +13,9 @@
 #include "event_queue.hpp"
 #include "g4lidar/core/session.hpp"
 #include "g4lidar/detail/saturating.hpp"
-#include "g4lidar/recognition.hpp"
 #include "g4lidar/recording/player.hpp"
 #include "g4lidar/recording/recorded_event.hpp"
+#include "kept_recognition.hpp"
 #include "point_pipeline.hpp"
 #include "receiver.hpp"
 #include "spin_up.hpp"
@@ -39,41 +39,6 @@ struct scan_expectation {
   const bool is_moving = last_ns != 0 && now_ns - last_ns < longest_gap_ns;
   return is_moving ? error_detail::no_revolution : error_detail::usual;
 }
-
-/// As which model a source is read, with its own memory for the candidates.
-class kept_recognition {
- public:
-  /// `used`: where nothing is known.
-  kept_recognition(const recognition& found, const model& used)
-      : what_(found), candidates_(found.candidates.begin(), found.candidates.end()) {
-    what_.model = &used;
-    if (candidates_.empty()) candidates_ = {&used};
-  }
-  /// Valid as long as this, and until become().
-  [[nodiscard]] recognition get() const noexcept {
-    recognition now = what_;
-    now.candidates = candidates_;
-    return now;
-  }
-  /// Whether the user, a recording or the name of the source states the model.
-  [[nodiscard]] bool is_stated() const noexcept {
-    return what_.by == known_by::user || what_.by == known_by::recording;
-  }
-  void set_device(std::uint8_t number, std::uint32_t baud) noexcept {
-    if (number != 0) what_.number = number;
-    if (baud != 0) what_.baud = baud;
-  }
-  /// Its samples show another model than its number. `candidates` is not empty.
-  void become(std::vector<const model*> candidates) noexcept {
-    candidates_ = std::move(candidates);
-    what_.model = candidates_.front();
-    what_.by = known_by::samples;
-  }
-
- private:
-  recognition what_;
-  std::vector<const model*> candidates_;
-};
 
 /// *Single thread.* The pipeline, the connection and the events must outlive it.
 class scan_source {
@@ -140,7 +105,7 @@ class scan_source {
   [[nodiscard]] const device_information& information() const noexcept { return information_; }
   /// Of the turning part, if it has reported another one.
   [[nodiscard]] const std::optional<device_information>& module_information() const noexcept {
-    return module_;
+    return recognised_.module;
   }
   /// Of a file that is played; else null.
   [[nodiscard]] virtual player* controls() noexcept { return nullptr; }
@@ -170,7 +135,6 @@ class scan_source {
   receiver receiver_;
   spin_up spin_up_;
   device_information information_{};
-  std::optional<device_information> module_;
 };
 
 }  // namespace g4lidar

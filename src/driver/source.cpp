@@ -208,7 +208,8 @@ result<std::unique_ptr<connector>> connector_for(const lidar_options& options, b
     case source_kind::device:
       break;
   }
-  return system_connector::find(path, known_of(options, wanted), at_any_rate, options.probe_all_ports);
+  return system_connector::find(path, known_of(options, wanted), at_any_rate,
+                                options.probe_all_ports);
 }
 
 std::optional<error> problem_with_source(const lidar_options& options) {

@@ -4,10 +4,10 @@
 
 #include <string>
 
-#include "driver/unrecognised_bytes.hpp"
 #include "g4lidar/core/layout_recogniser.hpp"
 #include "other_makers.hpp"
 #include "text_signs.hpp"
+#include "unrecognised_bytes.hpp"
 
 namespace g4lidar {
 

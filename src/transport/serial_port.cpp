@@ -78,13 +78,10 @@ tl::unexpected<error> not_opened(const std::string& path, int system_errno,
     case EIO:
       return failure(task::opening, problem::no_port, path, system_errno);
     case EACCES:
-    case EPERM: {
-      // Not by the mode of the file: those of a user whom it allows everything, and others by other rules.
-      const bool is_forbidden = system_errno == EPERM || ::geteuid() == 0;
+    case EPERM:
       return failure(task::opening, problem::permission,
                      path + " of group " + group_of(file.st_gid), system_errno,
-                     is_forbidden ? error_detail::not_passed : error_detail::usual);
-    }
+                     permission_detail(system_errno));
     case EBUSY:
       return busy(path, system_errno);
     case EISDIR:

@@ -6,10 +6,13 @@
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <termios.h>
+#include <unistd.h>
 
 #include <cerrno>
 #include <cstddef>
 #include <ctime>
+
+#include "g4lidar/error.hpp"
 
 namespace g4lidar {
 
@@ -37,6 +40,11 @@ struct system_calls {
 
 /// The real system calls.
 [[nodiscard]] const system_calls& real_system_calls() noexcept;
+
+/// EPERM, and what root may not open, are not by the mode of the file.
+[[nodiscard]] inline error_detail permission_detail(int why) noexcept {
+  return why == EPERM || ::geteuid() == 0 ? error_detail::not_passed : error_detail::usual;
+}
 
 /// Repeats the call while signals interrupt it. Not for close(), which has closed the descriptor
 /// anyway.

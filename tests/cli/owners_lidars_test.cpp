@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Lidars of owners that are not as the table says: each is read, and a warning states what was seen.
+// Lidars of owners that differ from the table: each is read, and a warning states what was seen.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -14,6 +14,7 @@ namespace {
 using cli::outcome;
 using cli::run;
 using cli::simulator;
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
@@ -87,6 +88,14 @@ TEST_F(OwnersLidar, TheUserMayInsistOnTheModel) {
   const outcome done = run({"scan", "-n", "2", "--model", "g5!", port_});
   EXPECT_EQ(done.code, 0) << done.err;
   EXPECT_THAT(done.err, HasSubstr("reports the number 5, that of a G4. It is read as a G5"));
+}
+
+TEST(OneWayNumber, ANumberThatTheModelDoesNotHave_IsReported) {
+  const std::string source =
+      "sim:?model=scl&model_id=4&ct_information=true&ct_crc=true&stray_before_zero=true";
+  using words = std::vector<std::string>;
+  for (const words& line : {words{"info", source}, {"health", source}, {"scan", source, "-n", "5"}})
+    EXPECT_THAT(run(line).err, AllOf(HasSubstr("number 4"), HasSubstr("SCL"))) << line[0];
 }
 
 }  // namespace

@@ -84,14 +84,6 @@ TEST_F(Talk, AskingVerbs_SetNothing) {
   EXPECT_THAT(log, Not(ContainsRegex(" A5 (01|02|06|07|09|0A|0B|0C|0E|0F|40|80|D0|D9)")));
 }
 
-TEST_F(Talk, ANumberThatTheModelDoesNotHave_IsReported) {
-  const std::string source =
-      "sim:?model=scl&model_id=4&ct_information=true&ct_crc=true&stray_before_zero=true";
-  using words = std::vector<std::string>;
-  for (const words& line : {words{"info", source}, {"health", source}, {"scan", source, "-n", "5"}})
-    EXPECT_THAT(run(line).err, AllOf(HasSubstr("number 4"), HasSubstr("SCL"))) << line[0];
-}
-
 TEST_F(Talk, Health_PrintsTheStatus) {
   const outcome well = run({"health", "sim:"});
   EXPECT_EQ(well.code, 0);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Bytes that are no packet and no answer: the errors state how many arrived, and how they begin.
-#include "driver/unrecognised_bytes.hpp"
+#include "survey/unrecognised_bytes.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -8,7 +8,7 @@
 
 cmake_minimum_required(VERSION 3.22)
 set(include "${ROOT}/include")
-set(most_of_lidar 22)
+set(most_of_lidar 24)
 set(faults)
 
 # ---- the direct and indirect includes of lidar.hpp ---------------------------------------------

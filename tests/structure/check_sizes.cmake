@@ -19,6 +19,7 @@ endif()
 set(larger
     device_options # of the simulator: one member for each property of a G4 that docs/sim_device.md lists
     g4lidar_options # of the C interface: new members follow those of its first version
+    lidar # one function for each thing that a program does with one
     lidar_options # one member for each option of a program
 )
 

@@ -165,16 +165,16 @@ class session {
   [[nodiscard]] constexpr std::uint64_t retries() const noexcept { return request_.retries(); }
 
   /// The connection was opened again: nothing is known about the device, and no request is in
-  /// progress. `which`, if it is not null, is what it is like from now on; valid as long as the session.
-  constexpr void reset(const model* which = nullptr) noexcept {
+  /// progress. `which`, if it is not null, is what it is like from now on; valid as long as the session. With `goes_on`
+  /// that is all that changes.
+  constexpr void reset(const model* which = nullptr, bool goes_on = false) noexcept {
+    if (which != nullptr) which_ = which;
+    if (goes_on) return;
     request_course request = request_;
     request.reset();
-    *this = session(channel_.times(), which != nullptr ? *which : *which_);
+    *this = session(channel_.times(), *which_);
     request_ = request;
   }
-
-  /// The device is like `which`, valid as long as the session, and goes on with what it does.
-  constexpr void become(const model& which) noexcept { which_ = &which; }
 
  private:
   friend struct session_test_access;

@@ -31,8 +31,8 @@ struct device_facts {
   std::vector<maybe_answer> settings{all_settings().size()};  ///< In the order of all_settings().
   /// The model, and the others that send the same bytes; empty: not known.
   std::vector<const g4lidar::model*> candidates{};
-  std::string_view known_by{};   ///< The model; of a device.
-  std::string contradictions{};  ///< See contradictions_of().
+  std::string_view known_by{};                 ///< The model; of a device.
+  std::string contradictions{};                ///< See contradictions_of().
   std::string_view why_unknown = "no answer";  ///< For settings that a lidar can be asked for.
 };
 

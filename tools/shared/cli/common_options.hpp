@@ -59,8 +59,8 @@ struct expected_device {
   /// What sends the bytes; null: as a file shows, or searched.
   const g4lidar::model* model = nullptr;
   std::optional<g4lidar::zero_angle> zero;  ///< Of --zero-angle.
-  bool insists = false;  ///< The model is certain: --model WORD!
-  bool listens = false;  ///< Not a byte is sent.
+  bool insists = false;                     ///< The model is certain: --model WORD!
+  bool listens = false;                     ///< Not a byte is sent.
   bool all_ports = false;
 };
 

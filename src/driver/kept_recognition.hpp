@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: MIT
+// As which model a driver reads its source.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "discovery/model_choice.hpp"
+#include "g4lidar/device_information.hpp"
+#include "g4lidar/recognition.hpp"
+
+namespace g4lidar {
+
+/// As which model a source is read, with its own memory for the candidates.
+class kept_recognition {
+ public:
+  /// `used`: where nothing is known.
+  kept_recognition(const recognition& found, const model& used)
+      : what_(found), candidates_(found.candidates.begin(), found.candidates.end()) {
+    what_.model = &used;
+    if (candidates_.empty()) candidates_ = {&used};
+  }
+  /// Valid as long as this, and until become().
+  [[nodiscard]] recognition get() const noexcept {
+    recognition now = what_;
+    now.candidates = candidates_;
+    return now;
+  }
+  /// Whether the user, a recording or the name of the source states the model.
+  [[nodiscard]] bool is_stated() const noexcept {
+    return what_.by == known_by::user || what_.by == known_by::recording;
+  }
+  void set_device(std::uint8_t number, std::uint32_t baud) noexcept {
+    if (number != 0) what_.number = number;
+    if (baud != 0) what_.baud = baud;
+  }
+  /// Its samples have another size than those of its number: the model is one that has, at this rate. Null: there is
+  /// none. *Allocates.*
+  [[nodiscard]] const model* follow(std::size_t sample_bytes, std::uint32_t baud, bool answers) {
+    auto fitting = models_that_fit({.baud = baud,
+                                    .sample_bytes = sample_bytes,
+                                    .answers = answers ? presence::yes : presence::no});
+    if (fitting.empty()) return nullptr;
+    candidates_ = std::move(fitting);
+    what_.model = candidates_.front();
+    what_.by = known_by::samples;
+    return what_.model;
+  }
+
+  std::optional<device_information>
+      module;  ///< Of the turning part, if it has reported another one.
+
+ private:
+  recognition what_;
+  std::vector<const model*> candidates_;
+};
+
+}  // namespace g4lidar
