@@ -44,11 +44,7 @@ void raise(const error& why) {
 const model* model_of(const std::optional<std::string>& word) {
   if (!word) return nullptr;
   const model* const found = model_named(*word);
-  constexpr std::size_t enough = 40;
-  if (found == nullptr) {
-    raise_bad_option("model: '" + printable(word->substr(0, enough)) +
-                     (word->size() > enough ? "...'" : "'") + " is not one of " + model_words());
-  }
+  if (found == nullptr) raise_bad_option("model: " + why_no_model(*word));
   return found;
 }
 

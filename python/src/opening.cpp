@@ -212,8 +212,9 @@ void bind_discovery(nb::module_& module) {
       "find_lidars",
       [](bool probe_all_ports) {
         auto ports = ports_now();
-        std::erase_if(
-            ports, [&](const port_info& port) { return !probe_all_ports && !is_g4_bridge(port); });
+        std::erase_if(ports, [&](const port_info& port) {
+          return is_reserved(port) || (!probe_all_ports && !is_g4_bridge(port));
+        });
         return ask(std::move(ports));
       },
       nb::kw_only(), "probe_all_ports"_a = false,

@@ -129,7 +129,7 @@ session_options node_parameters::for_session() const {
   if (const std::string word = node_.get_parameter("model").as_string(); !word.empty()) {
     lidar.model = g4lidar::model_named(word);
     if (lidar.model == nullptr)
-      throw std::invalid_argument("model: '" + word + "' is not one of " + g4lidar::model_words());
+      throw std::invalid_argument("model: " + g4lidar::why_no_model(word));
   }
   if (const auto baud = node_.get_parameter("baud").as_int(); baud > 0)
     lidar.baud = static_cast<std::uint32_t>(baud);
