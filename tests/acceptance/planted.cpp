@@ -178,6 +178,8 @@ const std::vector<planted> differences{
     {"rates.entries[2].shortest_mm", "g4", sees_a_post_at(0.2, 100.0), stream,
      "shortest_mm is 200"},
     {"rates.nominal_hz", "x2", rates({4'000, 0, 0}, 4'000), stream, "sample_rate_hz is 40"},
+    {"rates.least_seen_hz", "x2", rates({2'300, 0, 0}, 2'300), stream, "sample_rate_hz is 2"},
+    {"rates.most_seen_hz", "x2", rates({3'800, 0, 0}, 3'800), stream, "sample_rate_hz is 3"},
     {"rates.is_settable", "f4-pro", without({0xD0}), sample_rate, "answers_d0 is no, expected yes"},
     {"rates.is_settable", "f4-pro", rates({4'000, 0, 0}, 4'000), sample_rate,
      "codes is 1, expected 2"},

@@ -50,9 +50,11 @@ std::vector<std::string> fields_of(const model& row) {
                                 ct, has_motor_settings, other_layout, old, has_pitch, usual] = row;
   [[maybe_unused]] const auto& [layout, correction, max_samples, has_angle_replies,
                                 largest_byte_reply] = samples_of;
-  [[maybe_unused]] const auto& [entries, nominal_hz, is_settable, further_codes_hz] = rates_of;
+  [[maybe_unused]] const auto& [entries, nominal_hz, is_settable, further_codes_hz, least_seen_hz,
+                                most_seen_hz] = rates_of;
   [[maybe_unused]] const auto& [hz, shortest_mm] = entries.front();
-  [[maybe_unused]] const auto& [min_dhz, max_dhz, reply_offset_chz, ct_offset_dhz] = frequency_of;
+  [[maybe_unused]] const auto& [min_dhz, max_dhz, reply_offset_chz, ct_offset_dhz, pin] =
+      frequency_of;
   [[maybe_unused]] const auto& [min_mm, max_mm] = range;
   [[maybe_unused]] const auto& [last_version, old_layout, old_ct_offset, old_divisor] = old;
   std::vector<std::string> all{"word", "name"};
@@ -73,10 +75,13 @@ std::vector<std::string> fields_of(const model& row) {
                            "motor",
                            "rates.nominal_hz",
                            "rates.is_settable",
+                           "rates.least_seen_hz",
+                           "rates.most_seen_hz",
                            "frequency.min_dhz",
                            "frequency.max_dhz",
                            "frequency.reply_offset_chz",
                            "frequency.ct_offset_dhz",
+                           "frequency.pin",
                            "range.min_mm",
                            "range.max_mm",
                            "turn_deg",
@@ -96,8 +101,9 @@ std::vector<std::string> fields_of(const model& row) {
 }
 
 TEST(PlantedDifferences, EachFieldOfTheRecordHasOne) {
-  // What a program calls it, and which one is taken where bytes fit several: nothing that a lidar does.
-  std::set<std::string> had{"word", "name", "usual"};
+  // What a program calls it, which one is taken where bytes fit several, and a text about its plug: nothing that a lidar
+  // sends.
+  std::set<std::string> had{"word", "name", "usual", "frequency.pin"};
   for (const planted& each : all_planted()) had.insert(std::string(each.field));
   for (const std::string& each : fields_of(g4_model)) EXPECT_TRUE(had.contains(each)) << each;
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "program.hpp"
+#include "simulator.hpp"
 
 namespace {
 
