@@ -19,7 +19,6 @@ constexpr std::int64_t listening_ns = 120'000'000;
 constexpr std::int64_t answer_ns = 150'000'000;
 /// In later rounds: of a device that boots, or behind a slow network.
 constexpr std::int64_t late_answer_ns = 400'000'000;
-constexpr std::int64_t look_ns = 50'000'000;  // between two questions whether it is cancelled
 constexpr std::int64_t pulse_ns = 100'000'000;
 constexpr std::int64_t after_pulse_ns = 2'000'000'000;
 constexpr std::int64_t write_ns = 100'000'000;
@@ -192,20 +191,6 @@ lidar_search::found lidar_search::pulse() {
     }
   }
   return std::nullopt;
-}
-
-template <class Enough>
-result<void> lidar_search::listen(std::int64_t until_ns, Enough is_enough) {
-  std::array<std::uint8_t, 1024> buffer{};
-  while (!is_enough() && port_.now_ns() < until_ns) {
-    if (options_.is_cancelled && options_.is_cancelled()) {
-      return failure(task::asking, problem::cancelled, port_.name());
-    }
-    const auto got = port_.read(buffer, std::min(until_ns, port_.now_ns() + look_ns));
-    if (!got) return tl::unexpected(got.error());
-    take(bytes(buffer).first(got->count));
-  }
-  return {};
 }
 
 void lidar_search::take(bytes input) {

@@ -2,6 +2,7 @@
 // The search for the lidar at an open port: at which rate it sends or answers, and which model it is.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <optional>
@@ -36,6 +37,8 @@ class lidar_search {
   static constexpr std::int64_t information_ns = 600'000'000;
   /// One attempt to stop a scan, and a slow answer; or several.
   static constexpr std::int64_t one_stop_ns = 700'000'000;
+  static constexpr std::int64_t look_ns =
+      50'000'000;  // between two questions whether it is cancelled
 
   using found = result<std::optional<recognised_lidar>>;
 
@@ -92,5 +95,19 @@ class lidar_search {
   hearing heard_;
   unrecognised_bytes all_heard_;
 };
+
+template <class Enough>
+result<void> lidar_search::listen(std::int64_t until_ns, Enough is_enough) {
+  std::array<std::uint8_t, 1024> buffer{};
+  while (!is_enough() && port_.now_ns() < until_ns) {
+    if (options_.is_cancelled && options_.is_cancelled()) {
+      return failure(task::asking, problem::cancelled, port_.name());
+    }
+    const auto got = port_.read(buffer, std::min(until_ns, port_.now_ns() + look_ns));
+    if (!got) return tl::unexpected(got.error());
+    take(bytes(buffer).first(got->count));
+  }
+  return {};
+}
 
 }  // namespace g4lidar

@@ -125,6 +125,7 @@ lidar_search::found lidar_search::judge_silent(lidar_signs known, std::int64_t u
     auto silent = models_that_fit(known);
     if (!silent.empty()) return made(std::move(silent), known);
   } else {
+    heard_.stream = {};  // bytes are missing since the stop
     const auto has_rate = [this] { return heard_.stream.rate_hz() != 0; };
     if (auto done = listen(until_ns, has_rate); !done) return tl::unexpected(done.error());
     known.sample_rate_hz = heard_.stream.rate_hz();

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <utility>
 #include <vector>
 
 #include "transport/text_file.hpp"
@@ -162,7 +163,9 @@ error no_lidar(std::span<const port_info> others, bool has_looked) {
     if (!is_reserved(port)) named.push_back(&port);
   }
   if (named.empty()) return {task::finding, problem::no_port};
-  std::ranges::stable_sort(named, {}, [](const port_info* port) { return port->vendor_id == 0; });
+  std::ranges::sort(named, {}, [](const port_info* port) {
+    return std::pair(port->vendor_id == 0, std::string_view(port->path));
+  });
   constexpr std::size_t longest = 150;
   std::string subject = "a lidar (not looked at: ";
   for (const port_info* const port : named) {

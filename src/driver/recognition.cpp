@@ -21,6 +21,8 @@ std::string number_text(std::uint8_t number, const model& read_as) {
   const auto* const owner = std::ranges::find_if(models, with_number);
   if (owner == models.end()) {
     text += ", which no known model has.";
+  } else if (std::ranges::count_if(models, with_number) > 1) {
+    text += ", that of other models.";
   } else {
     text.append(", that of ").append(article_of(*owner)).append(" ").append(owner->name);
     text += ".";
@@ -57,7 +59,7 @@ std::string contradictions_of(const recognition& what) {
   }
   if (what.is_silent) {
     add("The lidar sends packets as of " + one + ", and answers no command: it can be read only. " +
-        "Maybe its receiving wire is not connected, or it is a COIN-D4 (LDS-03).");
+        "Maybe its receiving wire is not connected, it is a one-way model, or a COIN-D4 (LDS-03).");
   }
   return all;
 }

@@ -105,6 +105,7 @@ TEST(Decode, StatsAsJson_OneObjectAndNothingElse) {
   expected["points"] = 11;
   expected["suspect"] = 1;
   expected["time_packets"] = 0;
+  expected["empty_packets"] = 0;
   expected["crc_matches"] = 0;
   expected["crc_mismatches"] = 0;
   expected["skipped"]["noise"] = 6;

@@ -144,8 +144,9 @@ TEST_F(Doctor, ExaminesRawBytes) {
               HasSubstr("no fault found; the bytes were read as G5\n"));
   cli::write_file(path("a_file"), "no bytes of a lidar");
   const outcome other = examine(path("a_file"));
-  EXPECT_EQ(other.code, 6);
-  EXPECT_THAT(diagnoses_of(stages_of(other)), Contains("wrong_baud_rate")) << other.out;
+  EXPECT_EQ(other.code, 7);
+  EXPECT_THAT(diagnoses_of(stages_of(other)), Contains("other_device")) << other.out;
+  EXPECT_THAT(other.out, HasSubstr("This is text, not the packets of a lidar."));
   const outcome none = examine("file:" + path("nothing"));
   EXPECT_EQ(none.code, 10);
   EXPECT_THAT(diagnoses_of(stages_of(none)), Contains("bad_file")) << none.out;

@@ -156,9 +156,9 @@ TEST_F(Escaping, TheModelOfADevice) {
   std::string answer = cli::device_information();
   answer[7] = '\x1b';
   const cli::stubborn_device device(answer);
-  for (const words& arguments : {words{"info", device.path()}, {"packets", device.path()}}) {
-    EXPECT_EQ(expect_plain(arguments).code, 7) << arguments[0];
-  }
+  // A number that no model has is no error; it is printed as a number.
+  EXPECT_EQ(expect_plain({"info", device.path()}).code, 0);
+  EXPECT_NE(expect_plain({"packets", device.path()}).code, 0) << "it sends none";
 }
 
 TEST_F(Escaping, TheBootTextOfADevice) {

@@ -103,7 +103,7 @@ TEST_F(Pipe, Interrupted_WritesItsDataAndTheCounts) {
     EXPECT_EQ(done.code, 128 + signal);
     EXPECT_EQ(cli::lines_of(done.out).size(), 1U + 361U);
     EXPECT_EQ(done.err, R"({"bytes":827,"packets":10,"responses":0,"points":361,"suspect":0,)"
-                        R"("time_packets":0,"crc_matches":0,"crc_mismatches":0,)"
+                        R"("time_packets":0,"empty_packets":0,"crc_matches":0,"crc_mismatches":0,)"
                         R"("skipped":{"noise":0,"bad_header":0,"bad_checksum":0,"truncated":5}})"
                         "\n");
   }

@@ -137,7 +137,8 @@ TEST_F(FoundModel, RefusedSettingNamesTheCandidatesAndHowToChoose) {
   serve("x2");
   const outcome refused = run({"set", port_, "frequency=7"});
   EXPECT_EQ(refused.code, 2) << refused.err;
-  EXPECT_THAT(refused.err, HasSubstr(", scan frequency 7 Hz, X2 (or x2l, x3"));
+  EXPECT_THAT(refused.err,
+              AllOf(HasSubstr(", scan frequency 7 Hz, X2 ("), HasSubstr("(or x2l, x3")));
   EXPECT_THAT(refused.err, HasSubstr("If the lidar is another model, name it with"));
   EXPECT_THAT(refused.err, HasSubstr("--model"));
 }
@@ -158,11 +159,11 @@ TEST_F(FoundModel, NamedModelDecides) {
 }
 
 TEST_F(FoundModel, NamedModelThatTheDeviceContradicts_ErrorNamesBoth) {
-  serve("g2");
+  serve("g1");  // with the rate and the samples of a G2A
   for (const char* const command : {"info", "dump", "scan", "packets", "health", "stop", "start"}) {
-    const outcome done = run({command, port_, "--model", "g1"});
+    const outcome done = run({command, port_, "--model", "g2a"});
     EXPECT_EQ(done.code, 7) << command << done.err;
-    EXPECT_THAT(done.err, HasSubstr("model 15 (G2), not G1")) << command;
+    EXPECT_THAT(done.err, HasSubstr("model 19 (G1), not G2A")) << command;
   }
 }
 
@@ -200,12 +201,12 @@ TEST_F(FoundModel, StopOfALidarThatTurnsWithItsSupply_DoesNotClaimIt) {
 }
 
 // An X4 and an X4 Pro send the same at the same rate; one answers.
-TEST_F(FoundModel, OneWayLidarThatIsOpenedAsATwoWayOne_TheErrorNamesThisCause) {
+TEST_F(FoundModel, OneWayLidarThatIsOpenedAsATwoWayOne_TheWarningNamesThisCause) {
   serve("x4-pro");
   const outcome done = run({"health", port_, "--model", "x4"});
   EXPECT_NE(done.code, 0);
-  EXPECT_THAT(done.err, HasSubstr("it continues to scan and cannot be stopped"));
-  EXPECT_THAT(done.err, HasSubstr("A one-way lidar takes no commands: name its model."));
+  EXPECT_THAT(done.err, HasSubstr("as of an X4, and answers no command"));
+  EXPECT_THAT(done.err, HasSubstr("it is a one-way model"));
 }
 
 TEST_F(FoundModel, ATgThatDoesNotAnswerItsRate_HasThisSetting) {

@@ -7,6 +7,8 @@
 #include <cstdint>
 #include <string_view>
 
+#include "g4lidar/detail/cpp20.hpp"
+
 namespace g4lidar {
 
 namespace detail {
@@ -25,7 +27,8 @@ namespace detail {
 /// `label` without the name of the maker before it. *Pure.*
 [[nodiscard]] constexpr std::string_view without_maker(std::string_view label) noexcept {
   std::string_view rest = label;
-  for (const char letter : std::string_view("ydlidar")) {
+  constexpr std::string_view maker = "ydlidar";
+  for (const char letter : maker) {
     if (next_of_label(rest) != letter) return label;
   }
   return rest;

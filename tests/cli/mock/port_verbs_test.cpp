@@ -165,7 +165,7 @@ TEST_F(PortVerbs, Probe_Json) {
   bed.plug(first);
   bed.plug(second);
   const auto lidar = serve(first, '1');
-  const auto other_model = serve(second, '2', 77);
+  const auto other_model = serve(second, '2', 52);
   const std::vector<std::string> lines = lines_of(run({"list", "--probe", "--json"}).out);
   ASSERT_EQ(lines.size(), 2U);
   EXPECT_EQ(
@@ -180,7 +180,7 @@ TEST_F(PortVerbs, Probe_Json) {
 TEST_F(PortVerbs, Probe_ExitCodes) {
   EXPECT_EQ(run({"list", "--probe"}).code, 3);
   bed.plug(second);
-  const auto other_model = serve(second, '2', 77);
+  const auto other_model = serve(second, '2', 52);
   EXPECT_EQ(run({"list", "--probe"}).code, 7);
   bed.plug(first);  // whose node is missing
   EXPECT_EQ(run({"list", "--probe"}).code, 3);

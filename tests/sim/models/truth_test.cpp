@@ -182,7 +182,7 @@ TEST(SimModels, AreAllThatTheFamilyHas) {
   std::ranges::sort(wanted);
   EXPECT_EQ(simulated, wanted);
   sim::device_options options;
-  for (const char* const word : {"", "x5", "X4", "x4 "}) {
+  for (const char* const word : {"", "x5", "x"}) {
     EXPECT_FALSE(sim::use_model(options, word)) << word;
   }
   EXPECT_FALSE(sim::use_model(options, "x4", true)) << "no other layout";

@@ -241,8 +241,7 @@ verb make_list_verb() {
       .summary = "List serial ports and the lidars attached to them",
       .options = joined(
           flag_row("--probe", "Search a lidar at each port with such a bridge", options->probe),
-          flag_row("--all",
-                   "Query every port but consoles and Bluetooth: sends commands to any device",
+          flag_row("--all", "Query every port but consoles: sends bytes to any device",
                    options->all),
           flag_row("--models", "List the models that can be read, and no ports", options->models),
           json_row(options->common), output_rows(options->common), baud_row(options->common)),

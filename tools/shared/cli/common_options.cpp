@@ -16,6 +16,7 @@
 #include "g4lidar/filter_text.hpp"
 #include "g4lidar/lidar_options.hpp"
 #include "io/command_files.hpp"
+#include "logger.hpp"
 #include "suggestion.hpp"
 
 namespace g4_tool {
