@@ -89,7 +89,9 @@ class error_context {
     static_cast<void>(next(request_kind::set_direction, "direction; constant; idle"));
     static_cast<void>(next(request_kind::set_protection, "protection"));
     if (before != "; ") add(before).add("nothing");
-    return add_speed(which, "; its speed: ").add(")");
+    if (!which.frequency.pin.empty())
+      add("; its speed: voltage or PWM at pin ").add(which.frequency.pin);
+    return add(")");
   }
   /// How the speed of a model is set without commands, behind `before`; nothing where commands set it.
   error_context& add_speed(const model& which, std::string_view before) noexcept {

@@ -86,11 +86,8 @@ TEST_F(UserWords, ANameOfAnotherKindHasTheRightOne) {
 TEST_F(UserWords, WhatAModelLacksIsDoneOtherwise) {
   const outcome x4 = run({"set", "sim:?model=x4", "frequency=10"});
   EXPECT_EQ(x4.code, 2) << x4.err;
-  EXPECT_THAT(
-      x4.err,
-      HasSubstr(
-          "X4 (commands set nothing; its speed: a voltage or PWM at its pin M_SCTR; USB boards "
-          "leave it at their default)"));
+  EXPECT_THAT(x4.err,
+              HasSubstr("X4 (commands set nothing; its speed: voltage or PWM at pin M_SCTR)"));
   const outcome f4 = run({"set", "sim:?model=f4", "sample_rate=4k"});
   EXPECT_THAT(f4.err, HasSubstr("F4 (commands set frequency: 5 Hz to 12 Hz)"));
 }
