@@ -198,7 +198,7 @@ def test_a_lidar_that_is_listened_to_gets_no_byte() -> None:
         for scan, _ in zip(lidar.scans(), range(3)):
             assert len(scan) > 0
         with pytest.raises(errors.NotSupported):
-            lidar.set(frequency=8.0)
+            lidar.set(frequency_hz=8.0)
         known = lidar.recognition
     assert known["model"] == "t-mini-plus" and known["known_by"] == "recording"
     assert known["contradictions"] == ""
