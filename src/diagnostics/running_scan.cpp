@@ -86,11 +86,12 @@ void running_scan::received(const reading& what, bytes data) {
   silence_ns_ = std::max(silence_ns_, std::exchange(known.silence_ns, 0));
   if (phase_ == phase::runs) measured_.take(known);
   splitter_.take(data, what.arrival_ns, to_);
-  if (sizes_ && phase_ != phase::rests) follow_samples(data);
+  if (phase_ != phase::rests) follow_samples(data);
   look();
 }
 
 void running_scan::follow_samples(bytes data) {
+  if (!sizes_) return;
   sizes_->take(data);
   const std::size_t size = sizes_->other();
   if (sizes_->is_settled()) sizes_.reset();

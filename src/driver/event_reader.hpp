@@ -22,7 +22,9 @@ class event_reader {
     input_ = reading;
     arrival_ns_ = arrival_ns;
     events_ = 0;
-    if (sizes_) watch_sizes();
+    if (!sizes_) return;
+    sizes_->take(input_);
+    if (sizes_->is_settled()) sizes_.reset();
   }
   /// No more bytes follow: the unparsed bytes are discarded, and the next calls of next() parse the
   /// held bytes again.
@@ -78,11 +80,6 @@ class event_reader {
   [[nodiscard]] std::uint64_t bytes_parsed() const noexcept { return bytes_; }
 
  private:
-  void watch_sizes() noexcept {
-    sizes_->take(input_);
-    if (sizes_->is_settled()) sizes_.reset();
-  }
-
   stream_parser parser_;
   bytes input_;
   std::int64_t arrival_ns_ = 0;
