@@ -276,6 +276,7 @@ const g4lidar_recognition* g4lidar_get_recognition(g4lidar_lidar* lidar) {
         const recognition now = lidar->made->recognition();
         lidar->candidates = model_words(now.candidates);
         lidar->contradictions = contradictions_of(now);
+        // NOLINTBEGIN(bugprone-suspicious-stringview-data-usage): of literals, which end with a 0
         lidar->recognised = {.model = now.model->word.data(),
                              .candidates = lidar->candidates.c_str(),
                              .known_by = name_of(now.by).data(),
@@ -285,6 +286,7 @@ const g4lidar_recognition* g4lidar_get_recognition(g4lidar_lidar* lidar) {
                              .is_silent = now.is_silent,
                              .was_stopped = now.was_stopped,
                              .reserved = 0};
+        // NOLINTEND(bugprone-suspicious-stringview-data-usage)
         return G4LIDAR_OK + 0;
       },
       lidar);
