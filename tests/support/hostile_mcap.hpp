@@ -13,7 +13,7 @@ inline constexpr std::size_t hostile_chunk_size = std::size_t{64} << 20U;
 /// `size` bytes of `value`, little-endian.
 inline std::string little_endian(std::uint64_t value, std::size_t size) {
   std::string text;
-  for (std::size_t i = 0; i < size; ++i) text += static_cast<char>(value >> (8 * i));
+  for (std::size_t i = 0; i < size; ++i) text += static_cast<char>(i < 8 ? value >> (8 * i) : 0);
   return text;
 }
 
