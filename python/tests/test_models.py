@@ -200,7 +200,7 @@ def test_a_lidar_that_is_listened_to_gets_no_byte() -> None:
         with pytest.raises(errors.NotSupported):
             lidar.set(frequency_hz=8.0)
         known = lidar.recognition
-    assert known["model"] == "t-mini-plus" and known["known_by"] == "recording"
+    assert known["model"] == "t-mini-plus" and known["known_by"] == "user"
     assert known["contradictions"] == ""
 
 

@@ -35,7 +35,7 @@ void return_map::take(packet_view packet, const sample_format& of) noexcept {
   if (packet.is_suspect()) return;
   if (packet.is_zero()) {
     ++revolutions_;
-    is_looking_ = !is_thinned_ || revolutions_ <= 2 || revolutions_ % 16 == 0;
+    is_looking_ = !is_thinned_ || revolutions_ == 1 || revolutions_ % 64 == 0;
   }
   if (!is_looking_) return;
   switch (of.layout) {

@@ -22,7 +22,7 @@ struct direction_arc {
 class return_map {
  public:
   return_map() = default;
-  /// `is_thinned`: it looks at the first two revolutions and at each sixteenth, for a diagnosis that always runs.
+  /// `is_thinned`: it looks at the first revolution and at each 64th, for a diagnosis that always runs.
   explicit return_map(bool is_thinned) noexcept : is_thinned_(is_thinned) {}
 
   /// Adds a packet of such samples. A suspect packet adds nothing.
