@@ -58,8 +58,9 @@ struct lidar_options {
   bool probe_all_ports = false;
   /// What sends the bytes; valid as long as the lidar and its scans. Null: what a recording or `sim:`
   /// states, raw bytes show, or a search at the port finds; of a connector of the program a G4. A source
-  /// that states another model is refused with bad_option, and a device that reports another one
-  /// with other_device.
+  /// that states another model is refused with bad_option. A device whose packets cannot be read so, or whose number,
+  /// rate and size of samples all are those of another model, is refused with other_device; what else contradicts is in
+  /// lidar::recognition().
   const g4lidar::model* model = nullptr;
   /// `model` is certain, whatever the lidar reports: without it, a named lidar is refused that reports the number of
   /// another model with samples of the same size.

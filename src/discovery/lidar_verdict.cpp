@@ -46,7 +46,8 @@ recognised_lidar lidar_search::made(std::vector<const model*> candidates,
   lidar.by = options_.model != nullptr ? known_by::user
              : is_numbered             ? known_by::number
                                        : known_by::samples;
-  lidar.is_silent = of.answers == presence::no && lidar.model->link == link_kind::two_way;
+  lidar.is_silent = !options_.listen_only && of.answers == presence::no &&
+                    lidar.model->link == link_kind::two_way;
   if (heard_.device) {
     lidar.device = *heard_.device;
   } else if (const auto stated = heard_.stream.information()) {

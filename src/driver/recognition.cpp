@@ -6,6 +6,7 @@
 
 #include "core/number_text.hpp"
 #include "discovery/model_choice.hpp"
+#include "g4lidar/lidar_options.hpp"
 
 namespace g4lidar {
 namespace {
@@ -13,7 +14,8 @@ namespace {
 constexpr std::string_view please =
     " Please report it, with the file that g4-dump doctor --report writes.";
 
-std::string number_text(std::uint8_t number, const model& read_as) {
+std::string number_text(std::uint8_t number, const recognition& what) {
+  const model& read_as = *what.model;
   std::string text = "The lidar reports the number " + std::to_string(number);
   const auto with_number = [number](const model& row) {
     return std::ranges::find(row.ids, number) != row.ids.end();
@@ -28,6 +30,8 @@ std::string number_text(std::uint8_t number, const model& read_as) {
     text += ".";
   }
   text.append(" It is read as ").append(article_of(read_as)).append(" ").append(read_as.name);
+  if (what.candidates.size() > 1)
+    text += ", and " + model_words(what.candidates.subspan(1)) + " send the same";
   text += ": compare the label of the lidar.";
   return owner == models.end() ? text.append(please) : text;
 }
@@ -49,7 +53,7 @@ std::string contradictions_of(const recognition& what) {
     all += sentence;
   };
   if (what.number != 0 && std::ranges::find(what.model->ids, what.number) == what.model->ids.end())
-    add(number_text(what.number, *what.model));
+    add(number_text(what.number, what));
   const std::string one = std::string(article_of(*what.model)).append(" ").append(what.model->name);
   if (what.baud != 0 && !has_rate(*what.model, what.baud)) {
     const auto rates =

@@ -13,6 +13,7 @@
 #include "g4lidar/lidar.hpp"
 #include "g4lidar/sim/virtual_port.hpp"
 #include "g4lidar/sim/world.hpp"
+#include "g4lidar/transport/forwarding.hpp"
 
 namespace g4lidar::test {
 
@@ -39,6 +40,21 @@ struct bench {
   const model& which;
   sim::virtual_clock clock;
   sim::device device;
+};
+
+/// States that the model follows from the number of the device.
+class numbered_connector final : public forwarding_connector {
+ public:
+  numbered_connector(std::unique_ptr<connector> from, const model& which)
+      : forwarding_connector(std::move(from)), which_(&which) {}
+  [[nodiscard]] connector_traits traits() const noexcept override {
+    connector_traits known = forwarding_connector::traits();
+    known.recognised = {.model = which_, .by = known_by::number, .candidates = {&which_, 1}};
+    return known;
+  }
+
+ private:
+  const model* which_;
 };
 
 }  // namespace g4lidar::test

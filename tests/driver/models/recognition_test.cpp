@@ -11,29 +11,14 @@
 #include <utility>
 #include <vector>
 
-#include "g4lidar/transport/forwarding.hpp"
 #include "model_bench.hpp"
 
 namespace g4lidar {
 namespace {
 
 using namespace std::chrono_literals;
+using test::numbered_connector;
 using test::options_of;
-
-/// States that the model follows from the number of the device.
-class numbered_connector final : public forwarding_connector {
- public:
-  numbered_connector(std::unique_ptr<connector> from, const model& which)
-      : forwarding_connector(std::move(from)), which_(&which) {}
-  [[nodiscard]] connector_traits traits() const noexcept override {
-    connector_traits known = forwarding_connector::traits();
-    known.recognised = {.model = which_, .by = known_by::number, .candidates = {&which_, 1}};
-    return known;
-  }
-
- private:
-  const model* which_;
-};
 
 /// A device of one model with the number of another one.
 struct mixed_up {

@@ -17,13 +17,14 @@
 #include "g4lidar/recording/writer.hpp"
 #include "g4lidar/sim/virtual_port.hpp"
 #include "g4lidar/sim/world.hpp"
-#include "g4lidar/transport/forwarding.hpp"
+#include "model_bench.hpp"
 #include "recording/recorded_run.hpp"
 
 namespace g4lidar {
 namespace {
 
 using namespace std::chrono_literals;
+using test::numbered_connector;
 using test::temporary_path;
 
 /// The angles and ranges of five scans.
@@ -94,21 +95,6 @@ TEST(RecordedModel, GivesTheSamePoints) {
     EXPECT_EQ(replayed(path.text()), first) << word;
   }
 }
-
-/// States that the model follows from the number of the device.
-class numbered_connector final : public forwarding_connector {
- public:
-  numbered_connector(std::unique_ptr<connector> from, const model& which)
-      : forwarding_connector(std::move(from)), which_(&which) {}
-  [[nodiscard]] connector_traits traits() const noexcept override {
-    connector_traits known = forwarding_connector::traits();
-    known.recognised = {.model = which_, .by = known_by::number, .candidates = {&which_, 1}};
-    return known;
-  }
-
- private:
-  const model* which_;
-};
 
 // The recording states the model of the number, and its driver has read the samples.
 TEST(RecordedModel, SamplesThatContradictTheNumber_GiveTheSamePoints) {
