@@ -23,6 +23,13 @@ error refused(const transport& port, std::string_view product) {
           error_detail::unsupported_product};
 }
 
+/// The models with samples of this size, whatever their rates; those that answer so, if there are any. Never empty for 2, 3
+/// and 4 bytes.
+std::vector<const model*> models_of_size(std::size_t sample_bytes, presence answers) {
+  auto all = models_that_fit({.sample_bytes = sample_bytes, .answers = answers});
+  return all.empty() ? models_that_fit({.sample_bytes = sample_bytes}) : all;
+}
+
 }  // namespace
 
 lidar_signs lidar_search::signs() const noexcept {
@@ -98,7 +105,7 @@ lidar_search::found lidar_search::judge_named() {
   known.answers = presence::no;
   if (options_.model == nullptr) {
     auto all = models_that_fit(signs());
-    if (all.empty()) all = models_that_fit({.sample_bytes = known.sample_bytes});
+    if (all.empty()) all = models_of_size(known.sample_bytes, presence::unknown);
     return made(std::move(all), known);
   }
   const std::size_t own = sample_size(options_.model->samples.layout);
@@ -144,8 +151,7 @@ lidar_search::found lidar_search::judge_silent(lidar_signs known, std::int64_t u
   // A device that boots, or is busy, may stop later.
   const bool has_time = port_.now_ns() + one_stop_ns + information_ns < deadline_ns_;
   if (!all.empty() && has_time) return failure(task::asking, problem::does_not_stop, port_.name());
-  if (all.empty())
-    all = models_that_fit({.sample_bytes = known.sample_bytes, .answers = presence::no});
+  if (all.empty()) all = models_of_size(known.sample_bytes, presence::no);
   return made(std::move(all), known);
 }
 
@@ -166,8 +172,7 @@ lidar_search::found lidar_search::judge_number(lidar_signs known) {
   }
   known.id = 0;
   fitting = models_that_fit(known);
-  if (fitting.empty())
-    fitting = models_that_fit({.sample_bytes = known.sample_bytes, .answers = presence::yes});
+  if (fitting.empty()) fitting = models_of_size(known.sample_bytes, presence::yes);
   return made(std::move(fitting), known);
 }
 

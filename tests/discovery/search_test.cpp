@@ -115,6 +115,26 @@ TEST(Search, TwoWayLidarThatAnswersNothing_IsReadOnly) {
   }
 }
 
+/// No model need have this rate with samples of this size, and none of those that answer nothing: it is read by its size.
+TEST(Search, EachModelAtEachRate_ThatAnswersNothing_IsReadBySize) {
+  for (const model& each : models) {
+    if (each.link == link_kind::one_way || each.motor == motor_kind::dtr) continue;
+    for (const std::uint32_t baud : {115'200U, 128'000U, 153'600U, 230'400U, 460'800U, 512'000U}) {
+      SCOPED_TRACE(std::string(each.word) + " at " + std::to_string(baud));
+      sim::device_options options = options_of(each.word);
+      options.baud = baud;
+      const searched done = search_at(
+          options, {}, {sim::make_fault(fault_kind::scanning), sim::make_fault(fault_kind::deaf)});
+      if (!done.lidar) {  // more is measured than the line carries
+        EXPECT_NE(done.lidar.error(), problem::silence);
+        continue;
+      }
+      ASSERT_FALSE(done.lidar->candidates.empty());
+      EXPECT_EQ(sample_size(done.lidar->model->samples.layout), sample_size(each.samples.layout));
+    }
+  }
+}
+
 /// The number and the samples of a lidar that scans contradict: all pairs of models at one rate.
 TEST(Search, SamplesThatContradictTheNumber_Decide) {
   int pairs = 0;
