@@ -212,6 +212,7 @@ bool lidar_search::is_hopeless() const noexcept {
 tl::unexpected<error> lidar_search::not_found() const {
   std::string subject(port_.name());
   if (options_.model != nullptr) subject.append(", ").append(options_.model->name);
+  if (options_.listen_only) subject.append(", only listened to");
   subject.append(all_heard_.text());
   if (tried_.size() > 1 || options_.baud != 0) {
     std::string_view before = all_heard_.count() > 0 ? ", at " : " at ";

@@ -69,7 +69,9 @@ result<void> listening_driver::look() {
   }
   if (is_stalled) return failure(task::reading, problem::stalled, connection_.name());
   return failure(task::opening, is_silent ? problem::silence : problem::garbage,
-                 opened_as(connection_, *options_.model).add(stream_.heard().text()));
+                 opened_as(connection_, *options_.model)
+                     .add(options_.listen_only ? ", only listened to" : "")
+                     .add(stream_.heard().text()));
 }
 
 /// Some boards start the motor, or the lidar, at an edge of DTR only.

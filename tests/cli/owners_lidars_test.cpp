@@ -83,6 +83,20 @@ TEST_F(OwnersLidar, OfWhichOnlyTheDataWireIsConnected_IsRead) {
   }
 }
 
+TEST_F(OwnersLidar, ThatWaitsForCommandsIsSilentWhereItIsOnlyListenedTo) {
+  serve({"--model", "g4"});
+  for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{
+           {"scan", "--listen", port_}, {"scan", "--listen", "--model", "g4", port_}}) {
+    const outcome done = run(words);
+    EXPECT_NE(done.code, 0);
+    EXPECT_THAT(done.err, HasSubstr("only listened to"));
+  }
+  ASSERT_EQ(run({"record", "-n", "1", "sim:", "-o", path("walk.mcap")}).code, 0);
+  const outcome file = run({"scan", "--listen", path("walk.mcap")});
+  EXPECT_EQ(file.code, 2);
+  EXPECT_THAT(file.err, HasSubstr("listen_only"));
+}
+
 TEST_F(OwnersLidar, TheUserMayInsistOnTheModel) {
   serve({"--model", "g4"});
   const outcome refused = run({"scan", "-n", "2", "--model", "g5", port_});

@@ -225,6 +225,7 @@ void refuse_options_of_others(const lidar_options& how) {
   lidar_options given;
   given.device = how.device;
   given.baud = how.baud;
+  given.listen_only = how.listen_only;
   given.raw_sample_rate_hz = how.raw_sample_rate_hz;
   given.playback = how.playback;
   if (given.playback.speed == as_recorded) given.playback.speed = lidar_options().playback.speed;
@@ -237,11 +238,11 @@ lidar_options options_for(const common_options& options, lidar_options how) {
   how.device = options.source;
   how.model = named_model(options);
   if (options.expected.baud != 0) how.baud = options.expected.baud;
+  how.listen_only = options.expected.listens;
   refuse_options_of_others(how);
   how.zero_angle = options.expected.zero;
   how.probe_all_ports = options.expected.all_ports;
   how.insist_on_model = options.expected.insists;
-  how.listen_only = options.expected.listens;
   how.reconnect = options.on_loss != loss_rule::exit;
   // A file that is missing is not waited for.
   if (options.on_loss == loss_rule::wait && !is_file_name(options.source))
