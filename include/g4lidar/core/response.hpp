@@ -57,28 +57,31 @@ inline constexpr std::array<response_layout, 6> response_layouts{{
 /// The highest frequency that a response can contain, in 0.01 Hz.
 inline constexpr std::uint32_t max_frequency_chz = 2000;
 
-/// Whether byte `at` of a content of this kind is possible, given the bytes before it; `largest_byte` is the
+/// How many bytes at the begin of `content`, of a response of this kind, are possible; `largest_byte` is the
 /// largest content of one byte. *Pure.* (protocol: Commands, a reply is believed only if ...)
-[[nodiscard]] constexpr bool is_possible(response_kind kind, bytes content, std::size_t at,
-                                         std::uint8_t largest_byte = 2) noexcept {
-  const std::uint8_t value = content[at];
+[[nodiscard]] constexpr std::size_t possible_bytes(response_kind kind, bytes content,
+                                                   std::uint8_t largest_byte = 2) noexcept {
+  // How many bytes there are until the first one behind `begin` that is larger.
+  const auto up_to_larger = [content](std::size_t begin, std::uint8_t largest) {
+    std::size_t at = begin;
+    while (at < content.size() && content[at] <= largest) ++at;
+    return std::min(at, content.size());
+  };
   switch (kind) {
-    case response_kind::scan_started:
-      return false;
     case response_kind::device_info:
-      return at < 4 || value <= 9;  // each byte of the serial number is a decimal digit
+      return up_to_larger(4, 9);  // each byte of the serial number is a decimal digit
     case response_kind::health:
-      return at > 0 || value <= 2;
+      return content.empty() || content[0] <= 2 ? content.size() : 0;
     case response_kind::byte:
-      return value <= largest_byte;
+      return up_to_larger(0, largest_byte);
     case response_kind::frequency:
-      if (at == 0) return true;
-      if (at == 1) return load_u16(content, 0) <= max_frequency_chz;
-      return value == 0;
+      if (content.size() > 1 && load_u16(content, 0) > max_frequency_chz) return 1;
+      return up_to_larger(2, 0);
+    case response_kind::scan_started:
     case response_kind::pitch:
-      return true;
+      break;
   }
-  return false;
+  return content.size();
 }
 
 /// The index of the first layout with this length byte, which differs in all but the last two;
@@ -111,11 +114,8 @@ inline constexpr std::uint32_t max_frequency_chz = 2000;
   if (have > response_header_size && !is_angle) {
     const bytes content =
         data.subspan(response_header_size, std::min(have, size) - response_header_size);
-    for (std::size_t at = 0; at < content.size(); ++at) {
-      if (!is_possible(layout.kind, content, at, largest_byte)) {
-        return refused_at(response_header_size + at);
-      }
-    }
+    const std::size_t possible = possible_bytes(layout.kind, content, largest_byte);
+    if (possible < content.size()) return refused_at(response_header_size + possible);
   }
   if (have < size) return {wire_state::incomplete, have + 1};
   return {wire_state::valid, size};
