@@ -16,7 +16,6 @@
 
 #include "g4lidar/c/base.h"
 #include "g4lidar/c/discovery.h"
-#include "g4lidar/c/doctor.h"
 #include "g4lidar/c/filter.h"
 #include "g4lidar/c/lidar.h"
 #include "g4lidar/c/motion.h"

@@ -13,7 +13,7 @@ struct scan_frequency {
   std::uint16_t chz;
 
   /// `scan_frequency::hz(7.5)`: the nearest multiple of 0.01 Hz, limited to 16 bits. The limits of
-  /// a G4, 5 to 12 Hz, are checked where the value is used. *Pure.*
+  /// the model are checked where the value is used. *Pure.*
   [[nodiscard]] static constexpr scan_frequency hz(double value) noexcept {
     const double scaled = value * 100.0 + 0.5;
     if (!(scaled > 0.0)) return {0};  // also not-a-number
@@ -24,11 +24,6 @@ struct scan_frequency {
 
   friend constexpr bool operator==(scan_frequency, scan_frequency) noexcept = default;
 };
-
-/// The lowest scan frequency of a G4, in 0.01 Hz.
-inline constexpr std::uint16_t min_scan_frequency_chz = 500;
-/// The highest scan frequency of a G4, in 0.01 Hz.
-inline constexpr std::uint16_t max_scan_frequency_chz = 1200;
 
 /// The direction in which the head turns, seen from above. (commands 06, 07, 08)
 enum class motor_direction : std::uint8_t { clockwise = 0, counter_clockwise = 1 };
@@ -66,16 +61,7 @@ struct pitch_angle {
   friend constexpr bool operator==(pitch_angle, pitch_angle) noexcept = default;
 };
 
-/// Whether `value` is an enumerator: it may be a number that was cast. *Pure.*
-[[nodiscard]] constexpr bool is_valid(scan_frequency wanted) noexcept {
-  return wanted.chz >= min_scan_frequency_chz && wanted.chz <= max_scan_frequency_chz;
-}
-/// The same for the setting with three values, those of a G4,
-[[nodiscard]] constexpr bool is_valid(sample_rate wanted) noexcept {
-  return wanted == sample_rate::khz_4 || wanted == sample_rate::khz_8 ||
-         wanted == sample_rate::khz_9;
-}
-/// and for the settings with two.
+/// Whether `wanted`, of a setting with two values, is an enumerator: it may be a number that was cast. *Pure.*
 template <class Setting>
 [[nodiscard]] constexpr bool is_valid(Setting wanted) noexcept {
   return static_cast<std::uint8_t>(wanted) <= 1;

@@ -7,11 +7,12 @@
 #include <variant>
 
 #include "driver/identity_reader.hpp"
+#include "driver/option_problems.hpp"
 #include "g4lidar/core/reply_watch.hpp"
 #include "g4lidar/detail/saturating.hpp"
+#include "g4lidar/recording/raw_bytes.hpp"
 #include "g4lidar/recording/reader.hpp"
 #include "g4lidar/source.hpp"
-#include "g4lidar/transport/byte_file.hpp"
 #include "link_monitor.hpp"
 
 namespace g4lidar {
@@ -33,7 +34,7 @@ class file_run {
 
   void run(const std::string& path) {
     port_.add("path", path);
-    if (model_.word != g4_model.word) port_.add("model", std::string(model_.word));
+    if (model_ != g4_model) port_.add("model", std::string(model_.word));
     const bool is_read = is_recording(path) ? read_recording(path) : read_bytes(path);
     splitter_.finish(to_);
     survey_.finish();
@@ -52,11 +53,8 @@ class file_run {
     auto opened = recording_reader::open(path, {.is_cancelled = log_.options().is_cancelled});
     if (!opened) return fail(opened.error());
     recording_reader& reader = *opened;
-    if (reader.model().word != model_.word) {
-      return fail({task::opening, problem::bad_option,
-                   "model: " + std::string(model_.word) + ", and the recording states " +
-                       std::string(reader.model().word)});
-    }
+    const auto wrong = problem_with_model(&model_, &reader.model(), "the recording");
+    if (wrong) return fail(*wrong);
     const auto read = reader.for_each([this](const recorded_item& item) {
       take(item);
       return !is_cancelled();
@@ -79,11 +77,13 @@ class file_run {
 
   bool read_bytes(const std::string& path) {
     port_.add("format", "bytes");
-    const auto opened = byte_file::open(path);
+    const auto opened = open_raw_bytes(path, {}, {}, {}, &model_);
     if (!opened) return fail(opened.error());
+    const auto port = (*opened)->connect();
+    if (!port) return fail(port.error());
     std::array<std::uint8_t, 4096> buffer{};
     while (!is_cancelled()) {
-      const auto got = (*opened)->read(buffer, never_ns);
+      const auto got = (*port)->read(buffer, never_ns);
       if (!got) return got.error() == problem::end_of_input || fail(got.error());
       take(bytes(buffer).first(got->count), 0);
     }

@@ -95,10 +95,8 @@ result<lidar> lidar::open(std::string_view device, const lidar_options& options)
 result<lidar> lidar::open(std::unique_ptr<connector> from, const lidar_options& options) {
   const connector_traits behind = from->traits();
   const model* const stated = behind.recognised.model;
-  if (options.model != nullptr && stated != nullptr && options.model->word != stated->word) {
-    return failure(task::opening, problem::bad_option,
-                   "model: " + std::string(options.model->word) + ", and the source states " +
-                       std::string(stated->word));
+  if (const auto wrong = problem_with_model(options.model, stated, "the source")) {
+    return tl::unexpected(*wrong);
   }
   lidar_options used = options;
   if (stated != nullptr) used.model = stated;

@@ -121,6 +121,18 @@ lidar_options without_others(lidar_options options, option_users users) {
   return options;
 }
 
+std::optional<error> problem_with_model(const model* given, const model* stated,
+                                        std::string_view whose) {
+  if (given == nullptr || stated == nullptr || *given == *stated) return std::nullopt;
+  std::string subject = "model: ";
+  subject.append(given->word)
+      .append(", and ")
+      .append(whose)
+      .append(" states ")
+      .append(stated->word);
+  return error(task::opening, problem::bad_option, subject);
+}
+
 std::optional<error> problem_with_settings(const lidar_options& options) noexcept {
   const model& which = options.model != nullptr ? *options.model : g4_model;
   std::optional<error> found;

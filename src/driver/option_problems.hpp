@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string_view>
 
 #include "g4lidar/error.hpp"
 #include "g4lidar/lidar_options.hpp"
@@ -12,6 +13,9 @@
 
 namespace g4lidar {
 
+/// With the model that is given, where `whose` states another one ("the recording"). Nothing if they agree, or one is null.
+[[nodiscard]] std::optional<error> problem_with_model(const model* given, const model* stated,
+                                                      std::string_view whose);
 /// With the settings, which depend on the model; null: of a G4. *Pure.*
 [[nodiscard]] std::optional<error> problem_with_settings(const lidar_options& options) noexcept;
 

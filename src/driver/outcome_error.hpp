@@ -127,10 +127,9 @@ namespace g4lidar {
                                                              const model& which,
                                                              std::string_view device) noexcept {
   const bool answers = which.link == link_kind::two_way;
-  const bool has_id = who.model == which.ids[0] || who.model == which.ids[1];
   const model* const found =
       answers ? model_with_id(who.model, which.link) : one_way_other_than(which, who.model);
-  if (has_id || (!answers && found == nullptr)) return std::nullopt;
+  if (which.has_number(who.model) || (!answers && found == nullptr)) return std::nullopt;
   error_context about = error_context(device).add(", model ").add(std::uint32_t{who.model});
   if (found != nullptr) about.add(" (").add(found->name).add(")");
   return error(task::opening, problem::other_device, about.add(", not ").add(which.name));

@@ -105,12 +105,10 @@ result<std::unique_ptr<connector>> connect_simulated(const lidar_options& option
 /// `from`, or an error if it states another model than the name; null: the name has none.
 result<std::unique_ptr<connector>> of_model(result<std::unique_ptr<connector>> from,
                                             const model* named) {
-  if (!from || named == nullptr) return from;
-  const model* const stated = (*from)->traits().recognised.model;
-  if (stated == nullptr || stated->word == named->word) return from;
-  return failure(task::opening, problem::bad_option,
-                 "model: " + std::string(named->word) + ", and the recording states " +
-                     std::string(stated->word));
+  if (!from) return from;
+  const auto wrong = problem_with_model(named, (*from)->traits().recognised.model, "the recording");
+  if (wrong) return tl::unexpected(*wrong);
+  return from;
 }
 
 }  // namespace
@@ -181,10 +179,8 @@ result<std::unique_ptr<connector>> connector_for(const lidar_options& options, b
   const source_kind kind = kind_of_source(options.device);
   const auto named = model_in_source(options.device);
   if (!named) return tl::unexpected(named.error());
-  if (*named != nullptr && options.model != nullptr && (*named)->word != options.model->word) {
-    return failure(task::opening, problem::bad_option,
-                   "model: " + std::string(options.model->word) + ", and the name states " +
-                       std::string((*named)->word));
+  if (const auto wrong = problem_with_model(options.model, *named, "the name")) {
+    return tl::unexpected(*wrong);
   }
   const model* const wanted = *named != nullptr ? *named : options.model;
   lidar_options known = options;

@@ -107,7 +107,7 @@ void channel_set::put_channels(record_text& out) const {
     if (channel.id == topic::scan) name = scan_topic_;
     if (channel.id == topic::points) name = points_topic_;
     word_map words{{"offered_qos_profiles", ""}};
-    if (channel.is_of_connection() && model_->word != g4_model.word) {
+    if (channel.is_of_connection() && *model_ != g4_model) {
       name.insert(connection_prefix.size(), model_version);
       words.emplace_back(model_key, model_->word);
     }
@@ -144,7 +144,7 @@ void found_channels::take(field_reader record) {
 /// Whether the model is that of the channels before, or there was none.
 bool found_channels::agrees(const g4lidar::model& stated) {
   if (model_ == nullptr) model_ = &stated;
-  if (model_->word == stated.word) return true;
+  if (*model_ == stated) return true;
   contradiction_ = std::string(model_->word).append(" and ").append(stated.word);
   return false;
 }

@@ -17,8 +17,8 @@
 #include <variant>
 #include <vector>
 
+#include "byte_survey.hpp"
 #include "format.hpp"
-#include "g4lidar/core/layout_recogniser.hpp"
 #include "g4lidar/core/packet.hpp"
 #include "g4lidar/core/stream_parser.hpp"
 #include "g4lidar/detail/saturating.hpp"
@@ -256,44 +256,12 @@ class counted_items final : public item_source {
   std::size_t end_ = 0;
 };
 
-owned_fd open_bytes(const std::string& name) noexcept {
-  constexpr int flags = O_RDONLY | O_NOCTTY | O_NONBLOCK | O_CLOEXEC;  // a pipe without a writer
-  return owned_fd(name == "-" ? ::fcntl(0, F_DUPFD_CLOEXEC, 3) : ::open(name.c_str(), flags));
-}
-
 known_by basis_of(const recognised_model& found) noexcept {
   if (found.is_usual()) return known_by::samples;
   return found.basis == recognised_by::number ? known_by::number : known_by::nothing;
 }
 
-/// Of the regular file from `at` on.
-recognised_model recognised_at(const owned_fd& fd, off_t at) {
-  constexpr std::size_t enough = std::size_t{64} << 10U;
-  constexpr off_t most = off_t{1} << 20U;
-  layout_recogniser seen;
-  std::vector<std::uint8_t> piece(enough);
-  for (off_t read = 0; read < most && (read == 0 || seen.sample_bytes() == 0);) {
-    const ssize_t count =
-        uninterrupted([&] { return ::pread(fd.get(), piece.data(), piece.size(), at + read); });
-    if (count <= 0) break;
-    seen.take(bytes(piece).first(static_cast<std::size_t>(count)));
-    read += count;
-  }
-  if (seen.sample_bytes() == 0) seen.finish();
-  return {&seen.most_likely(), seen.basis()};
-}
-
 }  // namespace
-
-recognised_model recognised_in(const std::string& path) {
-  struct stat file{};
-  const bool is_known = (path == "-" ? ::fstat(0, &file) : ::stat(path.c_str(), &file)) == 0;
-  if (!is_known || !S_ISREG(file.st_mode)) return {};
-  const owned_fd fd = open_bytes(path);
-  return recognised_at(fd, std::max<off_t>(::lseek(fd.get(), 0, SEEK_CUR), 0));
-}
-
-const model& model_of_bytes(const std::string& path) { return *recognised_in(path).which; }
 
 result<std::unique_ptr<connector>> open_raw_bytes(const std::string& name,
                                                   std::optional<std::uint32_t> sample_rate_hz,
@@ -322,7 +290,12 @@ result<std::unique_ptr<connector>> open_raw_bytes(const std::string& name,
     return std::make_unique<pipe_connector>(std::move(port), *found->which, basis_of(*found));
   }
   const off_t at = std::max<off_t>(::lseek(fd.get(), 0, SEEK_CUR), 0);
-  const recognised_model found = which == nullptr ? recognised_at(fd, at) : recognised_model{which};
+  recognised_model found{which};
+  if (which == nullptr) {
+    const stream_survey seen = surveyed_at(fd, at);
+    if (const auto why = refusal_of(seen, title)) return tl::unexpected(*why);
+    found = model_of(seen);
+  }
   const model& sent_by = *found.which;
   auto waits = std::make_shared<waker>(real_system_calls());
   auto items = std::make_unique<counted_items>(

@@ -90,7 +90,7 @@ void raw_copy::put_zero(bool with_header, std::vector<std::uint8_t>& out) {
 void raw_copy::received(bytes data, bool is_wanted, std::vector<std::uint8_t>& out) {
   begins_within_ = begins_within_ || (!is_wanted && !has_begun_);
   if (is_wanted && !std::exchange(has_begun_, true) && begins_within_) {
-    const bool is_default = which_->word == g4_model.word;
+    const bool is_default = *which_ == g4_model;
     if (!is_default && which_->link == link_kind::two_way && source_.who.is_known()) {
       put_information(out);
     }

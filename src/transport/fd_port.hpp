@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The common part of serial ports, network connections and files: wait for a descriptor, read, write.
+// The common part of serial ports and network connections: wait for a descriptor, read, write.
 #pragma once
 
 #include <atomic>
@@ -8,7 +8,6 @@
 #include <string>
 #include <string_view>
 
-#include "g4lidar/transport/byte_file.hpp"
 #include "g4lidar/transport/serial_port.hpp"
 #include "g4lidar/transport/tcp_port.hpp"
 #include "g4lidar/transport/transport.hpp"
@@ -55,12 +54,12 @@ class waker {
 class fd_port : public transport {
  public:
   [[nodiscard]] result<received> read(std::span<std::uint8_t> out,
-                                      std::int64_t deadline_ns) noexcept override;
+                                      std::int64_t deadline_ns) noexcept final;
   [[nodiscard]] result<void> write(bytes data, std::int64_t deadline_ns) noexcept final;
   [[nodiscard]] result<void> pause(std::int64_t deadline_ns) noexcept final;
   [[nodiscard]] std::int64_t now_ns() const noexcept final { return steady_now_ns(); }
   void wake() noexcept final { waker_->wake(); }
-  [[nodiscard]] int native_handle() const noexcept override { return fd_.get(); }
+  [[nodiscard]] int native_handle() const noexcept final { return fd_.get(); }
   [[nodiscard]] std::string_view name() const noexcept final { return name_; }
   [[nodiscard]] std::uint32_t baud() const noexcept final { return baud_; }
   /// What the line discipline of a tty keeps; a socket keeps more.
@@ -104,11 +103,9 @@ class fd_port : public transport {
   int robbed_ = 0;  // consecutive times that poll() reported bytes and read() found none
 };
 
-/// serial_port::open(), byte_file::open() and tcp_port::open() with replaceable system calls, for tests.
+/// serial_port::open() and tcp_port::open() with replaceable system calls, for tests.
 [[nodiscard]] result<std::unique_ptr<transport>> open_serial_transport(
     std::string_view path, const serial_options& options, const system_calls& calls);
-[[nodiscard]] result<std::unique_ptr<transport>> open_file_transport(
-    std::string_view path, const byte_file_options& options, const system_calls& calls);
 [[nodiscard]] result<std::unique_ptr<transport>> open_connection(std::string_view address,
                                                                  const tcp_options& options,
                                                                  const system_calls& calls);

@@ -60,8 +60,6 @@ TEST(CArguments, NullIsAnError) {
   EXPECT_TRUE(is_refused(g4lidar_find_lidars(nullptr, nullptr, &why)));
   EXPECT_TRUE(is_refused(g4lidar_select_port(nullptr, nullptr, nullptr, &why)));
   EXPECT_TRUE(is_refused(g4lidar_port_monitor_open(nullptr, &why)));
-  EXPECT_TRUE(is_refused(g4lidar_diagnose("", nullptr, nullptr, &why)));
-  EXPECT_TRUE(is_refused(g4lidar_diagnose_simulated(nullptr, nullptr, nullptr, &why)));
   EXPECT_TRUE(is_refused(g4lidar_mask_parse(nullptr, nullptr, &why)));
   EXPECT_TRUE(is_refused(g4lidar_estimator_create(nullptr, &why)));
   // Without an error struct, too.
@@ -118,8 +116,6 @@ TEST(CArguments, NullIsAnErrorOfFunctionsWithoutErrorStruct) {
   EXPECT_EQ(g4lidar_simulator_get_state(nullptr), nullptr);
   EXPECT_EQ(g4lidar_ports_at(nullptr, 0), nullptr);
   EXPECT_EQ(g4lidar_ports_count(nullptr), 0U);
-  EXPECT_EQ(g4lidar_report_at(nullptr, 0), nullptr);
-  EXPECT_EQ(g4lidar_report_count(nullptr), 0U);
   EXPECT_EQ(g4lidar_mask_polygons(nullptr, &count), nullptr);
   EXPECT_EQ(g4lidar_wall_ns(nullptr, 5), 0);
   EXPECT_EQ(g4lidar_get_playback(nullptr), nullptr);
@@ -138,7 +134,6 @@ TEST(CArguments, NullIsAnErrorOfFunctionsWithoutErrorStruct) {
   g4lidar_simulator_free(nullptr);
   g4lidar_ports_free(nullptr);
   g4lidar_port_monitor_free(nullptr);
-  g4lidar_report_free(nullptr);
   g4lidar_mask_free(nullptr);
   g4lidar_estimator_free(nullptr);
   g4lidar_options_init(nullptr, 0);

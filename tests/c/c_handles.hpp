@@ -29,7 +29,6 @@ using lidar = owned<g4lidar_lidar, g4lidar_free>;
 using simulator = owned<g4lidar_simulator, g4lidar_simulator_free>;
 using recorder = owned<g4lidar_recorder, g4lidar_recorder_free>;
 using reader = owned<g4lidar_reader, g4lidar_reader_free>;
-using report = owned<g4lidar_report, g4lidar_report_free>;
 using shaper = owned<g4lidar_shaper, g4lidar_shaper_free>;
 using ports = owned<g4lidar_ports, g4lidar_ports_free>;
 

@@ -100,25 +100,6 @@ TEST(CMembers, TruthOfARevolution) {
   }
 }
 
-TEST(CMembers, WholeNumbersAreEvidence) {
-  const simulator device = simulate("sim:?seed=5&fault=flip*0.001");
-  g4lidar_report* made = nullptr;
-  ASSERT_EQ(g4lidar_diagnose_simulated(device.get(), nullptr, &made, nullptr), G4LIDAR_OK);
-  const report found(made);
-  int whole = 0;
-  for (std::size_t i = 0; i < g4lidar_report_count(made); ++i) {
-    const g4lidar_stage* stage = g4lidar_report_at(made, i);
-    for (std::size_t k = 0; k < stage->evidence_count; ++k) {
-      const g4lidar_evidence& each = stage->evidence[k];
-      if (each.kind != G4LIDAR_VALUE_INTEGER) continue;
-      ++whole;
-      EXPECT_EQ(each.integer, std::atoll(each.text)) << each.name;
-      EXPECT_EQ(each.real, static_cast<double>(each.integer)) << each.name;
-    }
-  }
-  EXPECT_GT(whole, 5);
-}
-
 TEST(CMembers, NeighboursOfOutliers) {
   // A wall 2 m away, 1 degree between its returns: 3.5 cm. One return is 0.5 m nearer.
   std::vector<g4lidar_point> points(90);

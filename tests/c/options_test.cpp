@@ -141,14 +141,6 @@ TEST(COptions, ReservedBytesOfHandlesAreChecked) {
     g4lidar_ports_free(made);
     return code;
   });
-  expect_reserved_is_checked<g4lidar_doctor_options>(
-      g4lidar_doctor_options_init, [&](auto* options) {
-        options->measuring_time_ns = 100'000'000;
-        g4lidar_report* made = nullptr;
-        const int code = g4lidar_diagnose_simulated(device.get(), options, &made, nullptr);
-        g4lidar_report_free(made);
-        return code;
-      });
 }
 
 TEST(COptions, ReservedBytesOfRecordingsAreChecked) {

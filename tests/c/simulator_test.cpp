@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The simulator, the doctor, discovery and the event loop in C.
+// The simulator, discovery and the event loop in C.
 #include <poll.h>
 
 #include <chrono>
@@ -105,118 +105,6 @@ TEST(CSimulator, OdometryFollowsTheRobot) {
   EXPECT_NEAR(odometry.pose.x_m, 1.0, 1e-6);
   const simulator standing = simulate();
   EXPECT_EQ(g4lidar_simulator_next_odometry(standing.get(), &odometry), G4LIDAR_NOTHING);
-}
-
-report examine(const char* setup, g4lidar_doctor_options* options = nullptr) {
-  const simulator device = simulate(setup);
-  g4lidar_report* made = nullptr;
-  g4lidar_error why;
-  EXPECT_EQ(g4lidar_diagnose_simulated(device.get(), options, &made, &why), G4LIDAR_OK)
-      << why.message;
-  return report(made);
-}
-
-TEST(CDoctor, FindsNothingInAHealthyLidar) {
-  const report found = examine("sim:?seed=5");
-  ASSERT_EQ(g4lidar_report_count(found.get()), 10U);
-  bool has_rate = false;
-  for (std::size_t i = 0; i < g4lidar_report_count(found.get()); ++i) {
-    const g4lidar_stage* stage = g4lidar_report_at(found.get(), i);
-    EXPECT_LE(stage->verdict, G4LIDAR_VERDICT_SKIPPED) << stage->name;
-    EXPECT_EQ(stage->diagnosis_count, 0U) << stage->name;
-    if (std::strcmp(stage->name, "rate") != 0) continue;
-    for (std::size_t k = 0; k < stage->evidence_count; ++k) {
-      const g4lidar_evidence& each = stage->evidence[k];
-      const bool is_in_hz = std::strcmp(each.unit, "Hz") == 0 && each.kind == G4LIDAR_VALUE_REAL;
-      has_rate = has_rate || (is_in_hz && std::abs(each.real - 7.0) < 0.2);
-      EXPECT_GT(std::strlen(each.text), 0U) << each.name;
-    }
-  }
-  EXPECT_TRUE(has_rate);
-  EXPECT_EQ(g4lidar_report_at(found.get(), 10), nullptr);
-}
-
-struct seen {
-  std::vector<std::string> stages;
-  bool is_cancelled = false;
-};
-
-TEST(CDoctor, FindsAFaultAndReportsEachStage) {
-  g4lidar_doctor_options options;
-  g4lidar_doctor_options_init(&options, sizeof options);
-  seen all;
-  options.context = &all;
-  options.on_stage = [](const g4lidar_stage* stage, void* context) {
-    static_cast<seen*>(context)->stages.emplace_back(stage->name);
-  };
-  const report found = examine("sim:?fault=mute", &options);
-  ASSERT_EQ(all.stages.size(), g4lidar_report_count(found.get()));
-  EXPECT_EQ(all.stages.front(), "baud_rate");
-  bool is_found = false;
-  for (std::size_t i = 0; i < g4lidar_report_count(found.get()); ++i) {
-    const g4lidar_stage* stage = g4lidar_report_at(found.get(), i);
-    EXPECT_EQ(all.stages[i], stage->name);
-    for (std::size_t k = 0; k < stage->diagnosis_count; ++k) {
-      is_found = true;
-      EXPECT_GE(stage->diagnoses[k].severity, G4LIDAR_VERDICT_WARN);
-      EXPECT_GT(std::strlen(stage->diagnoses[k].cause), 10U);
-      EXPECT_GT(std::strlen(stage->diagnoses[k].advice), 10U);
-    }
-  }
-  EXPECT_TRUE(is_found);
-}
-
-TEST(CDoctor, TakesTheModelThatIsExpected) {
-  const auto remark_with = [](const char* expected) {
-    g4lidar_doctor_options options;
-    g4lidar_doctor_options_init(&options, sizeof options);
-    EXPECT_EQ(options.model, nullptr);
-    EXPECT_EQ(options.baud, 0U);
-    options.model = expected;
-    const report found = examine("sim:?model=x4", &options);
-    const g4lidar_stage* stage = g4lidar_report_at(found.get(), 0);
-    return std::string(stage->diagnosis_count > 0 ? stage->diagnoses[0].name : "") + stage->remark;
-  };
-  EXPECT_EQ(remark_with(nullptr), "");
-  EXPECT_EQ(remark_with("x4"), "");
-  EXPECT_EQ(remark_with("x2"), "other_deviceThe lidar is an X4 at 128000 baud, not an X2.");
-  g4lidar_doctor_options options;
-  g4lidar_doctor_options_init(&options, sizeof options);
-  options.model = "x44";
-  const simulator device = simulate();
-  g4lidar_report* made = nullptr;
-  g4lidar_error why;
-  EXPECT_EQ(g4lidar_diagnose_simulated(device.get(), &options, &made, &why), G4LIDAR_BAD_OPTION);
-  EXPECT_EQ(made, nullptr);
-}
-
-TEST(CDoctor, ExaminesTheSourceThatIsNamed) {
-  g4lidar_report* made = nullptr;
-  ASSERT_EQ(g4lidar_diagnose("/dev/no-such-port", nullptr, &made, nullptr), G4LIDAR_OK);
-  const report found(made);
-  const g4lidar_stage* port = g4lidar_report_at(found.get(), 0);
-  ASSERT_NE(port, nullptr);
-  EXPECT_STREQ(port->name, "port");
-  EXPECT_EQ(port->verdict, G4LIDAR_VERDICT_FAIL);
-  EXPECT_NE(std::strstr(port->remark, "/dev/no-such-port"), nullptr) << port->remark;
-  ASSERT_EQ(port->diagnosis_count, 1U);
-  EXPECT_STREQ(port->diagnoses[0].name, "no_port");
-  for (std::size_t i = 1; i < g4lidar_report_count(found.get()); ++i) {
-    EXPECT_EQ(g4lidar_report_at(found.get(), i)->verdict, G4LIDAR_VERDICT_SKIPPED);
-  }
-}
-
-TEST(CDoctor, IsCancelled) {
-  g4lidar_doctor_options options;
-  g4lidar_doctor_options_init(&options, sizeof options);
-  options.is_cancelled = [](void*) { return true; };
-  const report found = examine(nullptr, &options);
-  for (std::size_t i = 0; i < g4lidar_report_count(found.get()); ++i) {
-    const g4lidar_stage* stage = g4lidar_report_at(found.get(), i);
-    if (std::strcmp(stage->name, "loss") == 0) {
-      EXPECT_EQ(stage->verdict, G4LIDAR_VERDICT_SKIPPED);
-    }
-  }
 }
 
 // One test: the environment is that of the whole process.

@@ -272,14 +272,14 @@ TEST_F(Convert, FilesWithoutUsableData_AreRefused) {
   cli::write_file(path("text.jsonl"), "{}\n");
   cli::write_file(path("text.mcap"), "dear\n");
   expect_refused({path("empty.bin"), path("out.csv")}, 10, "is empty");
-  expect_refused({path("text.bin"), path("out.csv")}, 10, "this is text");
+  expect_refused({path("text.bin"), path("out.csv")}, 10, "This is text");
   expect_refused({path("text.csv"), path("out.jsonl")}, 10, "no columns");
   expect_refused({path("names.csv"), path("out.jsonl")}, 10, "holds no points");
   expect_refused({path("text.jsonl"), path("out.csv")}, 10, "holds no points");
   expect_refused({path("text.mcap"), path("out.csv")}, 10, "text.mcap");
   expect_refused({path("text.mcap"), path("out.bin")}, 10, "text.mcap");
   expect_refused({path("text.mcap"), path("out.mcap")}, 10, "text.mcap");
-  expect_refused({path("text.bin"), path("out.mcap")}, 10, "this is text");
+  expect_refused({path("text.bin"), path("out.mcap")}, 10, "This is text");
   expect_refused({path("text.bin"), path("out.csv"), "--from-format", "mcap"}, 10, "text.bin");
 }
 

@@ -91,7 +91,7 @@ TEST_F(Failure, NoPacket) {
   expect_sentence(noise, 10, "no point packet in the 500 bytes");
   EXPECT_THAT(noise.err, HasSubstr("wrong baud rate"));
   expect_nothing_written({"decode", path("noise.bin")});
-  expect_sentence(run({"decode"}, "scan,angle_deg\n1,2\n"), 10, "this is text");
+  expect_sentence(run({"decode"}, "scan,angle_deg\n1,2\n"), 10, "This is text");
   expect_sentence(run({"decode"}, cli::scan_started()), 10, "the lidar was not scanning");
   for (const char* const format : {"csv", "jsonl", "text"}) {
     EXPECT_EQ(run({"decode", path("noise.bin"), "--format", format, "--scans"}).out, "");

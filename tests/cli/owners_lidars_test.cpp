@@ -107,6 +107,22 @@ TEST_F(OwnersLidar, TheUserMayInsistOnTheModel) {
   EXPECT_THAT(done.err, HasSubstr("reports the number 5, that of a G4. It is read as a G5"));
 }
 
+TEST_F(OwnersLidar, BytesOfAFileThatAreNoPackets_AreNamedByEachVerb) {
+  cli::write_file(path("x4.hex"), "AA 55 00 28 01 02 03 04 05 06 07 08\nAA 55 00 28 05 06 07 08\n");
+  using words = std::vector<std::string>;
+  for (const words& line : {words{"decode"},
+                            {"dump"},
+                            {"scan"},
+                            {"record", "-o", path("a.mcap")},
+                            {"convert", path("x4.hex"), path("b.mcap")}}) {
+    words all = line;
+    if (line[0] != "convert") all.push_back(path("x4.hex"));
+    const outcome done = run(all);
+    EXPECT_NE(done.code, 0) << line[0];
+    EXPECT_THAT(done.err, HasSubstr("xxd -r -p")) << line[0];
+  }
+}
+
 TEST(OneWayNumber, ANumberThatTheModelDoesNotHave_IsReported) {
   const std::string source =
       "sim:?model=scl&model_id=4&ct_information=true&ct_crc=true&stray_before_zero=true";

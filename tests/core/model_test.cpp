@@ -262,6 +262,21 @@ TEST(Model, AnOldFirmwareHasARecordOfItsOwn) {
 }
 
 // Of a TG code 3 means 20 kHz and code 4 10 kHz, beside the places of the rates.
+TEST(Model, IsTheSameByItsWord_AlsoWithOldFirmware) {
+  const model& plus = *model_named("t-mini-plus");
+  EXPECT_TRUE(plus == *model_named("t-mini-plus"));
+  EXPECT_FALSE(plus == g4_model);
+  for (const model& each : detail::old_models) EXPECT_TRUE(each == *model_named(each.word));
+}
+
+TEST(Model, HasTheNumbersOfItsDevices) {
+  const model& f4_pro = *model_named("f4-pro");
+  EXPECT_TRUE(f4_pro.has_number(8));
+  EXPECT_TRUE(f4_pro.has_number(4));  // by its manual
+  EXPECT_FALSE(f4_pro.has_number(5));
+  EXPECT_FALSE(g4_model.has_number(0)) << "it has no other number";
+}
+
 TEST(Model, CodesOfSampleRates) {
   for (const model& each : models) {
     const bool is_tg = each.word.starts_with("tg");

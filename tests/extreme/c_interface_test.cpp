@@ -254,19 +254,10 @@ TEST(ExtremeC, Indices) {
   g4lidar_find_options find;
   g4lidar_find_options_init(&find, sizeof find);
   g4lidar_ports* ports = nullptr;
-  g4lidar_doctor_options doctor;
-  g4lidar_doctor_options_init(&doctor, sizeof doctor);
-  const test::temporary_path file(".bin");
-  std::ofstream(file.text()) << "no packet";
-  g4lidar_report* report = nullptr;
-  ASSERT_EQ(g4lidar_diagnose(file.text().c_str(), &doctor, &report, nullptr), G4LIDAR_OK);
   EXPECT_EQ(g4lidar_list_ports(&find, &ports, nullptr), G4LIDAR_OK);
   for (const std::size_t index : values<std::size_t>()) {
     EXPECT_TRUE(index < g4lidar_ports_count(ports) || g4lidar_ports_at(ports, index) == nullptr);
-    EXPECT_TRUE(index < g4lidar_report_count(report) ||
-                g4lidar_report_at(report, index) == nullptr);
   }
-  g4lidar_report_free(report);
   g4lidar_ports_free(ports);
 }
 

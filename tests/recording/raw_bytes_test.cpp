@@ -141,6 +141,49 @@ TEST_F(RawBytes, Cancelled_EndsACallSoonAndTheNextOneContinues) {
   }
 }
 
+// Sentences with their checksum, as a receiver of satellite positions sends them.
+std::string satellite_sentences() {
+  std::string all;
+  for (const std::string words :
+       {"GPGGA,1", "GPGSA,2", "GPGSV,3", "GPRMC,4", "GPVTG,5", "GPGLL,6"}) {
+    unsigned sum = 0;
+    for (const char each : words) sum ^= static_cast<unsigned char>(each);
+    std::array<char, 8> digits{};
+    std::snprintf(digits.data(), digits.size(), "*%02X\r\n", sum);
+    all.append("$").append(words).append(digits.data());
+  }
+  return all;
+}
+
+TEST_F(RawBytes, OfNoLidar_AreNamedWhereTheyAreOpened) {
+  const auto open_with = [this](const std::string& content, const model* which) {
+    std::ofstream(path_, std::ios::binary) << content;
+    return open_raw_bytes(path_, 9000, {}, {}, which);
+  };
+  const auto hex = open_with("AA 55 00 28 01 02 03 04\nAA 55 00 28 05 06 07 08\n", nullptr);
+  ASSERT_FALSE(hex);
+  EXPECT_EQ(hex.error(), problem::bad_file);
+  EXPECT_THAT(hex.error().message(), HasSubstr("xxd -r -p"));
+  const auto positions = open_with(satellite_sentences(), nullptr);
+  ASSERT_FALSE(positions);
+  EXPECT_EQ(positions.error(), problem::other_device);
+  EXPECT_EQ(positions.error().detail(), error_detail::other_maker);
+  EXPECT_THAT(positions.error().message(), HasSubstr("satellite positions"));
+  EXPECT_TRUE(open_with(satellite_sentences(), &g4_model)) << "its owner has named the model";
+  EXPECT_TRUE(open_with("some text, and then a packet: " + packet_of(9), nullptr));
+  EXPECT_TRUE(open_with(std::string(4096, '\x17'), nullptr)) << "unknown bytes";
+}
+
+TEST(WhatIs, StatesWhatBytesAreThatAreNoPackets) {
+  const auto what = [](const std::string& data) {
+    return what_is({reinterpret_cast<const std::uint8_t*>(data.data()), data.size()});
+  };
+  EXPECT_THAT(what("This is no lidar but a shell.\n"), HasSubstr("This is text"));
+  EXPECT_THAT(what(satellite_sentences()), HasSubstr("satellite positions"));
+  EXPECT_EQ(what("This is no lidar but a shell.\n" + packet_of(9)), "");
+  EXPECT_EQ(what({}), "");
+}
+
 TEST_F(RawBytes, MissingFileOrDirectory_IsRefused) {
   EXPECT_EQ(open_raw_bytes("/nowhere/at/all", 9000).error(), problem::system);
   EXPECT_EQ(open_raw_bytes("/", 9000).error(), problem::bad_file);

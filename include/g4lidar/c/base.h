@@ -17,7 +17,7 @@
  * - A pointer that a function returns is a view: it belongs to the handle, and is valid until the
  *   next call with the same handle unless the function promises more. Such structures may get more
  *   members at their end, so programs must not copy them by their size. Those that stand in arrays
- *   get none: g4lidar_point, g4lidar_evidence, g4lidar_diagnosis, g4lidar_polygon.
+ *   get none: g4lidar_point, g4lidar_polygon.
  * - A structure of options begins with its size. Its `_init` function sets the size and the default
  *   values. NULL instead of options means the default values. `reserved`, and a member that the
  *   library does not know, must be 0; else the function returns G4LIDAR_BAD_ARGUMENT.

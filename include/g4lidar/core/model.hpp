@@ -188,7 +188,7 @@ inline constexpr auto models = [] {
   if (id == 0) return nullptr;
   const model* found = nullptr;
   for (const model& each : models) {
-    if (each.link != link || (each.ids[0] != id && each.ids[1] != id)) continue;
+    if (each.link != link || !each.has_number(id)) continue;
     if (found != nullptr) return nullptr;
     found = &each;
   }
@@ -305,10 +305,9 @@ inline constexpr auto old_models = [] {
 [[nodiscard]] constexpr const model& with_firmware(const model& which,
                                                    const device_information& who) noexcept {
   const unsigned version = who.firmware_major * 256U + who.firmware_minor;
-  const bool is_it = who.model != 0 && (who.model == which.ids[0] || who.model == which.ids[1]);
-  if (!is_it || version > which.old_firmware.last_version) return which;
+  if (!which.has_number(who.model) || version > which.old_firmware.last_version) return which;
   for (const model& each : detail::old_models) {
-    if (each.word == which.word) return each;
+    if (each == which) return each;
   }
   return which;
 }

@@ -161,6 +161,15 @@ struct model {
   firmware_difference old_firmware{};
   bool has_pitch = false;             ///< Command 98.
   usual_kind usual = usual_kind::no;  ///< Whether it is taken where bytes fit several models.
+
+  /// Whether its devices identify themselves with this number; not with 0.
+  [[nodiscard]] constexpr bool has_number(std::uint8_t id) const noexcept {
+    return id != 0 && (id == ids[0] || id == ids[1]);
+  }
+  /// Whether both are the same model, also of a device with other firmware (with_firmware()).
+  friend constexpr bool operator==(const model& a, const model& b) noexcept {
+    return a.word == b.word;
+  }
 };
 
 /// Whether `which` measures the intensity of returns. *Pure.*

@@ -39,7 +39,8 @@ namespace g4lidar {
 /// file. Of everything else the first bytes are read while it is opened, as stream_head states: so this
 /// waits until the lidar sends, at most 10 s, and up to 1 s longer; `is_cancelled` ends it.
 ///
-/// Fails with bad_option and system; reading fails with bad_file if a pipe contains a recording.
+/// Fails with bad_option and system; and where `which` is null, for a regular file of text with bad_file, and for one
+/// with the frames of another maker with other_device. Reading fails with bad_file if a pipe contains a recording.
 [[nodiscard]] G4LIDAR_API result<std::unique_ptr<connector>> open_raw_bytes(
     const std::string& path, std::optional<std::uint32_t> sample_rate_hz,
     const playback_options& options = {}, std::function<bool()> is_cancelled = {},
@@ -52,6 +53,10 @@ namespace g4lidar {
 [[nodiscard]] G4LIDAR_API recognised_model recognised_in(const std::string& path);
 /// The model that recognised_in() finds. Valid forever. Allocates.
 [[nodiscard]] G4LIDAR_API const model& model_of_bytes(const std::string& path);
+
+/// What `data` is, where it contains no packet of any model: text, frames of another maker, bytes that were changed on
+/// the way. Sentences for the user; empty: not known. Allocates.
+[[nodiscard]] G4LIDAR_API std::string what_is(bytes data);
 
 /// The topic under which recordings keep the bytes of the lidar. A file in MCAP with these messages,
 /// by any program, is a recording.

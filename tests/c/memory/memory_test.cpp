@@ -109,19 +109,4 @@ TEST(CMemory, OfARecordingAndItsReader) {
             5);
 }
 
-TEST(CMemory, OfADiagnosticRun) {
-  g4lidar_doctor_options options;
-  g4lidar_doctor_options_init(&options, sizeof options);
-  options.measuring_time_ns = 100'000'000;
-  const simulator device = simulate();
-  EXPECT_GT(failures_of([&](g4lidar_error& why) {
-              g4lidar_report* made = nullptr;
-              const int code = g4lidar_diagnose_simulated(device.get(), &options, &made, &why);
-              EXPECT_EQ(made == nullptr, code != G4LIDAR_OK);
-              g4lidar_report_free(made);
-              return code;
-            }),
-            20);
-}
-
 }  // namespace

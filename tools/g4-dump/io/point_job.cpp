@@ -215,9 +215,9 @@ class point_run {
     }
     byte_points way(*writer_, out, job_.source.raw_sample_rate_hz.value_or(first_rate_hz(*model_)),
                     *model_, common_.expected.zero);
-    bool has_text = false;
+    std::vector<std::uint8_t> beginning;
     pump(in, out, [&](std::span<const std::uint8_t> got) {
-      if (way.bytes() == 0) has_text = looks_like_text(got);
+      if (way.bytes() == 0) beginning.assign(got.begin(), got.end());
       way.take(got);
     });
     if (!writer_->is_done()) way.finish();  // else what is left was not asked for
@@ -231,7 +231,7 @@ class point_run {
     }
     if (way.counts().packets == 0 && !out.is_closed() && interrupt() == 0) {
       throw failure(exit_code::bad_file,
-                    why_no_packet(way.counts(), way.bytes(), has_text, in.title()));
+                    why_no_packet(way.counts(), way.bytes(), beginning, in.title()));
     }
     return way.counts().packets;
   }

@@ -228,11 +228,10 @@ int to_bytes(const convert_options& options, file_form from) {
 
 [[noreturn]] void refuse_without_packets(const convert_options& options,
                                          const recorded_result& result) {
-  input in(path_of_source(options.in()), "Give a recording or raw bytes.");
-  std::array<std::uint8_t, 4096> begin;
-  const bool has_text = looks_like_text(std::span(begin).first(in.read(begin)));
+  const std::string path = path_of_source(options.in());
   throw failure(exit_code::bad_file,
-                why_no_packet(result.lidar.stream, result.lidar.bytes, has_text, in.title()));
+                why_no_packet(result.lidar.stream, result.lidar.bytes, beginning_of(path),
+                              path == "-" ? "standard input" : in_quotes(path)));
 }
 
 int to_recording(const convert_options& options) {

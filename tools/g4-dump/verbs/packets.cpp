@@ -140,7 +140,7 @@ void list_lidar(const packets_options& options) {
   std::unique_ptr<protocol_log> log;
   const g4lidar::model* logged = nullptr;
   const auto begin = [&](const g4lidar::model& which) {
-    if (log && logged->word == which.word) return;
+    if (log && *logged == which) return;
     if (log) log->finish();
     logged = &which;
     log = std::make_unique<protocol_log>(style_for(options.style, which),

@@ -17,6 +17,7 @@
 #include "cli/exit_code.hpp"
 #include "cli/logger.hpp"
 #include "g4lidar/diagnostics/diagnostic_run.hpp"
+#include "g4lidar/recording/raw_bytes.hpp"
 
 namespace g4_tool {
 namespace {
@@ -227,26 +228,26 @@ nlohmann::ordered_json counts_as_json(const stream_counts& counts, std::uint64_t
           {"skipped", skipped}};
 }
 
-bool looks_like_text(std::span<const std::uint8_t> bytes) noexcept {
-  constexpr std::size_t enough = 4096;
-  const auto first = bytes.first(std::min(bytes.size(), enough));
-  return !first.empty() && std::all_of(first.begin(), first.end(), [](std::uint8_t c) {
-    return (c >= ' ' && c <= '~') || (c >= '\t' && c <= '\r');
-  });
+std::vector<std::uint8_t> beginning_of(const std::string& path) {
+  std::vector<std::uint8_t> first(std::size_t{64} << 10U);
+  input in(path, {});
+  first.resize(in.is_file() ? in.read(first) : 0);
+  return first;
 }
 
-std::string why_no_packet(const stream_counts& counts, std::uint64_t bytes, bool has_text,
-                          const std::string& title) {
+std::string why_no_packet(const stream_counts& counts, std::uint64_t bytes,
+                          std::span<const std::uint8_t> beginning, const std::string& title) {
   const auto found = diagnosis_of(counts, bytes);
   if (found == diagnosis::bad_file) {
     return title + " is empty. Give raw bytes from the lidar's port while it was scanning.";
   }
   const std::string text =
       fmt::format("no point packet in the {} of {}", counted(bytes, "byte"), title);
-  if (has_text) {
-    return text +
-           ": this is text. Give raw bytes from the lidar's port, or use g4-dump convert for csv "
-           "and jsonl.";
+  if (const std::string known = g4lidar::what_is(beginning); !known.empty()) {
+    return fmt::format(
+        "{}. {} Give raw bytes from the lidar's port, or use g4-dump convert for csv "
+        "and jsonl.",
+        text, known);
   }
   if (found == diagnosis::wrong_baud_rate) {
     return fmt::format("{}. {} Give raw bytes from the lidar's port.", text, baud_question());

@@ -91,12 +91,13 @@ g4lidar::recording_reader read_items(
 [[nodiscard]] nlohmann::ordered_json counts_as_json(const g4lidar::stream_counts& counts,
                                                     std::uint64_t bytes);
 
-/// Whether the first bytes look like text, which no recording does.
-[[nodiscard]] bool looks_like_text(std::span<const std::uint8_t> bytes) noexcept;
+/// The first 64 KiB of the file at `path`; nothing of what is no regular file, or cannot be read.
+[[nodiscard]] std::vector<std::uint8_t> beginning_of(const std::string& path);
 
-/// Why `bytes` bytes of `title` contain no packet, and what to do: whole sentences.
+/// Why `bytes` bytes of `title`, which begin with `beginning`, contain no packet, and what to do: whole sentences.
 [[nodiscard]] std::string why_no_packet(const g4lidar::stream_counts& counts, std::uint64_t bytes,
-                                        bool has_text, const std::string& title);
+                                        std::span<const std::uint8_t> beginning,
+                                        const std::string& title);
 
 /// A warning if most bytes of an input belong to no packet; else empty.
 [[nodiscard]] std::string warning_about(const g4lidar::stream_counts& counts, std::uint64_t bytes);

@@ -156,7 +156,7 @@ const g4lidar::model* named_model(const common_options& options) {
 void report_model(const g4lidar::model& found, bool is_usual) {
   const std::string_view samples = words_for(found.samples.layout);
   if (!is_usual) {
-    if (found.word != g4_model.word)
+    if (found != g4_model)
       logger::info(fmt::format("read as {}, which these bytes name\n", found.name));
     return;
   }
@@ -209,7 +209,7 @@ const g4lidar::model* model_of(const common_options& options,
   if (interrupt() != 0) throw interrupted();
   const g4lidar::model* const found = value_of(stated);
   if (found == nullptr) return nullptr;
-  if (named != nullptr && named->word != found->word) {
+  if (named != nullptr && *named != *found) {
     throw bad_value(fmt::format("--model: {}, and {} states {}", named->word,
                                 in_quotes(options.source), found->word));
   }
