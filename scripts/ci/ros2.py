@@ -17,7 +17,6 @@ from cyclonedds.topic import Topic
 from cyclonedds.util import duration
 from ros2_messages import Header, LaserScan
 from ros2_numbers import Truth
-from ros2_services import check_services
 from rosbags.typesys import Stores, get_typestore
 
 
@@ -156,7 +155,7 @@ def main():
     check_place(participant)
     print("cyclonedds of PyPI: " + ", ".join(f"{len(numbers)} {name}" for name, numbers in seen.items()) +
           f" as the simulator has them; a late subscriber of /tf_static; {check_hashes(participant)} type hashes as "
-          f"rosbags computes them; {check_services(participant)} calls of services")
+          f"rosbags computes them")
 
 
 main()

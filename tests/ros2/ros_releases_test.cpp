@@ -9,7 +9,6 @@
 #include <map>
 #include <string>
 
-#include <services.h>
 #include "cli/program.hpp"
 #include "diagnosis.hpp"
 #include "lidar.hpp"
@@ -154,46 +153,7 @@ TEST_F(Releases, EachPublicationHasTheHashOfItsType) {
   EXPECT_EQ(found["g4lidar_type_sensor_msgs__msg__dds___LaserScan_"], found["rt/scan"]);
 }
 
-TEST_F(Releases, WithoutServicesThereIsNoneThatHangs) {
-  ::unsetenv("RMW_IMPLEMENTATION");
-  published all(domain_);
-  cli::program tool({"sim:", "--announce", "iron"});
-  // The last one that is made.
-  ASSERT_TRUE(comes_true([&] { return all.data().contains("ros_discovery_info"); }));
-  for (const auto& [topic, words] : all.data()) EXPECT_FALSE(topic.starts_with("rr/")) << topic;
-  tool.send(SIGINT);
-}
-
-/// As Fast DDS sends it: without the number of the client, which is outside of the message there.
-TEST_F(Releases, RequestsWithoutTheNumberOfTheClientAreCounted) {
-  dds_topic_descriptor_t described = *dds::bool_message.descriptor;
-  described.m_typename = std_srvs_srv_dds__Trigger_Request__desc.m_typename;
-  const dds::entity topic(dds_create_topic(domain_.participant(), &described,
-                                           "rq/g4lidar/stopRequest", nullptr, nullptr));
-  const dds::message_type type{&described, ""};
-  const dds::qos quality = dds::qos_of({.type = &type});
-  const dds::entity writer(
-      dds_create_writer(domain_.participant(), topic.get(), quality.get(), nullptr));
-  diagnosis diagnostics(domain_);
-  cli::program tool({"sim:"});
-  ASSERT_TRUE(comes_true([&] { return diagnostics["unreadable"] == "0"; }));
-  dds_publication_matched_status_t matched{};
-  ASSERT_TRUE(comes_true([&] {
-    static_cast<void>(dds_get_publication_matched_status(writer.get(), &matched));
-    return matched.current_count == 1;
-  }));
-  const std_msgs_msg_dds__Bool_ dummy{};
-  ASSERT_EQ(dds_write(writer.get(), &dummy), DDS_RETCODE_OK);
-  EXPECT_TRUE(comes_true([&] { return diagnostics["unreadable"] == "1"; }));
-  EXPECT_THAT(diagnostics["g4lidar: services warning"], HasSubstr("use rmw_cyclonedds_cpp"));
-  EXPECT_EQ(diagnostics["requests"], "0");
-  EXPECT_TRUE(comes_true([&] { return diagnostics["g4lidar: services level"] == "0"; }));
-  tool.send(SIGINT);
-  EXPECT_THAT(tool.wait().err, HasSubstr("use rmw_cyclonedds_cpp"));
-}
-
 TEST_F(Releases, ATopicRestsAndTurnsTheMotor) {
-  ::unsetenv("RMW_IMPLEMENTATION");
   const served_lidar lidar;
   for (const std::string name : {"/robot1/lidars/run", "/run_it"}) {
     cli::program tool(
@@ -218,7 +178,7 @@ TEST_F(Releases, TheTopicOfTheMotorIsBelowTheNodeOrOff) {
   diagnosis diagnostics(domain_);
   cli::program without(
       {"sim:", "--namespace", "robot1", "--node-name", "lidars", "--run-topic", "off"});
-  EXPECT_TRUE(comes_true([&] { return diagnostics["requests"] == "0"; }));
+  EXPECT_TRUE(comes_true([&] { return diagnostics["robot1/lidars: state level"] == "0"; }));
   EXPECT_EQ(run.subscribers(), 0U);
   without.send(SIGINT);
 }

@@ -21,10 +21,12 @@ common_options options_of(const ros2_options& options, const named_source& which
   return made;
 }
 
-/// The model that the options or the source name, or that a file is of; null: it is searched.
-const model* expected_model(const ros2_options& options, const named_source& which) {
-  if (options.common.expected.model != nullptr) return options.common.expected.model;
-  return model_of_source(which.source, [] { return interrupt() != 0; }).value_or(nullptr);
+/// How the scans of a lidar are shaped, for its own messages or for merging.
+shaping_options shaping_of(const common_options& how, const mask& loaded, bool merges) {
+  shaping_options made = shape_of(how, loaded);
+  made.for_merging = merges;
+  made.restamps = true;  // nobody is to deskew the points of a message again
+  return made;
 }
 
 }  // namespace
@@ -38,13 +40,9 @@ lidar_node::lidar_node(dds::bus& on, const ros2_options& options, const named_so
       merger_(into),
       index_(index),
       diagnostics_(on, options, name_space_, which.name),
-      parameters_(parameters_of(options_of(options, which), options.filter_words, into != nullptr,
-                                shaper_)) {
+      mask_(mask_in(options.common.mask)),
+      shaper_(shaping_of(options_of(options, which), mask_, into != nullptr)) {
   const std::string frame_id = frame_of(options, which.name);
-  parameters_.fix("frame_id", merger_ == nullptr ? frame_id : options.frames.robot);
-  if (options.bins) parameters_.fix("grid", std::int64_t{*options.bins});
-  if (const auto* const expected = expected_model(options, which)) show_model(*expected);
-  parameters_.fix("order", options.order == scan_order::time ? "time" : "angle");
   if (merger_ == nullptr) {
     messages_ = std::make_unique<scan_messages>(on, options, name_space_, frame_id);
   }
@@ -93,20 +91,7 @@ void lidar_node::update() {
                       is_played_ ? now_ns_.load() : wall.count());
 }
 
-void lidar_node::change(std::vector<named_value> wanted, std::function<void(std::string)> done) {
-  device_->reader().ask(
-      [this, what = std::move(wanted), after = std::move(done)](g4lidar::lidar* lidar) {
-        after(in_tool_words(parameters_.change(lidar, what)));
-      });
-}
-
-void lidar_node::show_model(const model& which) {
-  if (!options_.bins) parameters_.fix("grid", std::int64_t{default_bins(which)});
-  parameters_.fix("model", std::string(which.word));
-}
-
 void lidar_node::on_open(g4lidar::lidar& device) {
-  show_model(*device.recognition().model);
   diagnostics_.name_models(device.recognition());
   if (is_played_) {
     feed_.follow(*device.player());
@@ -117,13 +102,6 @@ void lidar_node::on_open(g4lidar::lidar& device) {
   for (const setting_change& each : options_.settings) {
     const auto done = device.ask(change_to(each.value));
     if (!done) logger::info(in_tool_words(done.error().message()) + "\n");
-  }
-  if (const auto kind = kind_of_source(which_.source);
-      kind == source_kind::device || kind == source_kind::simulated) {
-    if (device.information().is_known()) {
-      parameters_.fix("serial_number", std::string(device.information().serial_number()));
-    }
-    parameters_.read_device(device);
   }
 }
 
@@ -143,7 +121,8 @@ void lidar_node::on_scan(const scan& whole) {
   shaper_.shape(whole, path_.until(whole.end_ns()));
   if (report_) report_->add(whole.size(), shaper_.outside());
   const scan_times when{whole.time_ns(), whole.duration_ns, stamp_ns(0)};
-  const grid_options& grid = parameters_.filters().grid;
+  grid_options grid = options_.common.grid;
+  grid.longest_mm = options_.common.filter.greatest_range_mm;
   if (merger_ != nullptr) return merger_->add(index_, shaper_, grid, when);
   if (messages_->wants_scan()) messages_->publish_scan(shaper_.for_grid(), grid, when);
   if (messages_->wants_points()) messages_->publish_points(shaper_.kept(), when);

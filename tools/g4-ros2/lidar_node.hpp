@@ -16,7 +16,7 @@
 
 #include "dds/bus.hpp"
 #include "g4lidar/diagnostics/diagnostic_message.hpp"
-#include "g4lidar/lidar_parameters.hpp"
+#include "g4lidar/export/mask.hpp"
 #include "g4lidar/motion.hpp"
 #include "g4lidar/odometry_feed.hpp"
 #include "g4lidar/odometry_path.hpp"
@@ -47,15 +47,11 @@ class lidar_node final : public reader_listener {
   /// Allows or forbids the motor to run, by a command of a user.
   void allow(bool runs) noexcept { is_allowed_ = runs; }
 
-  /// Sets parameters of this lidar, all or none. `done` is called in another thread with the error, or "".
-  void change(std::vector<named_value> wanted, std::function<void(std::string)> done);
-  [[nodiscard]] const lidar_parameters& parameters() const noexcept { return parameters_; }
   /// Adds a status to its diagnostics: see lidar_diagnostics.
   void also_report(std::function<diagnostic_status()> what) {
     diagnostics_.also_report(std::move(what));
   }
 
-  [[nodiscard]] const std::string& name() const noexcept { return which_.name; }
   [[nodiscard]] source_reader& device() noexcept { return *device_; }
   [[nodiscard]] const std::string& name_space() const noexcept { return name_space_; }
 
@@ -69,7 +65,6 @@ class lidar_node final : public reader_listener {
   using clock = std::chrono::steady_clock;
 
   [[nodiscard]] bool is_wanted() const;
-  void show_model(const model& which);
   /// The stamp of a point::time_ns. Only in the thread of the reader.
   [[nodiscard]] std::int64_t stamp_ns(std::int64_t time_ns) const {
     return device_->reader().wall_ns(time_ns);
@@ -89,9 +84,9 @@ class lidar_node final : public reader_listener {
   std::unique_ptr<dds::publisher> place_;
   std::unique_ptr<odometry_subscription> driven_;
   odometry_path path_;
+  mask mask_;
   scan_shaper shaper_;
   std::unique_ptr<deskew_report> report_;  // null if it does not deskew
-  lidar_parameters parameters_;
   std::atomic<bool> is_allowed_ = true;
   standby standby_;
   std::unique_ptr<source_reader> device_;  // destroyed first

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // g4-ros2: lidars as ROS 2 topics, without a ROS installation.
+#include <algorithm>
 #include <memory>
-#include <string>
+#include <string_view>
 #include <vector>
 
 #include "cli/exit_code.hpp"
@@ -28,11 +29,6 @@ constexpr const char* details =
   /clock         the time of a recording
   NODE/run       subscribed, std_msgs/Bool: false rests the motors, true lets them turn
 
-Services, for rmw_cyclonedds: get_parameters, set_parameters, list_parameters, ... of the node, as
-ros2 param uses them, with frequency, sample_rate, range_max, fov, speckle and others;
-start and stop (std_srvs/Trigger). With another middleware a call would wait for ever, so they are
-offered if RMW_IMPLEMENTATION is rmw_cyclonedds_cpp here, or with --services on.
-
 --announce auto announces the node to ROS 2 from Iron on if ROS_DISTRO names such a release, and to
 Humble if only such programs are in the domain.
 
@@ -41,10 +37,16 @@ and begins the frame of its lidar: front_laser. --merge publishes one scan and o
 of them in the frame of the robot instead.
 
 The domain is that of ROS_DOMAIN_ID; ROS_LOCALHOST_ONLY, ROS_AUTOMATIC_DISCOVERY_RANGE,
-ROS_STATIC_PEERS and CYCLONEDDS_URI are honoured. After --ros-args, -r renames topics, the node
-and the namespace, -p sets any option: -p grid:=360, and --params-file reads them from a YAML file.
+ROS_STATIC_PEERS and CYCLONEDDS_URI are honoured. Parameters, services and --ros-args are those of
+the node in the ROS package g4lidar_ros.
 With --deskew odometry the robot's motion is that of the recording or the simulated robot, else of
 the subscribed odometry topic.)";
+
+constexpr const char* for_nodes_only =
+    "--ros-args is for nodes of ROS, as that of the ROS package g4lidar_ros. Here __ns is "
+    "--namespace, __node is --node-name, scan:= is --scan-topic (points, odom, /tf and /tf_static "
+    "likewise), a parameter is the option of its name, and a file of parameters is --config, in "
+    "TOML";
 
 verb make_verb() {
   const auto options = std::make_shared<ros2_options>();
@@ -77,14 +79,9 @@ int main(int argc, char** argv) {
                         .verbs = [] { return std::vector<verb>{make_verb()}; },
                         .default_verb = "g4-ros2",
                         .has_config = true};
-  std::vector<std::string> words;
-  try {
-    words = without_ros_arguments({argv + 1, argv + argc}, make_verb().options);
-  } catch (const bad_value& reason) {
-    logger::write("g4-ros2: " + with_help(reason.what(), "g4-ros2") + "\n");
+  if (std::find(argv + 1, argv + argc, std::string_view("--ros-args")) != argv + argc) {
+    logger::write("g4-ros2: " + with_help(for_nodes_only, "g4-ros2") + "\n");
     return static_cast<int>(exit_code::usage);
   }
-  std::vector<const char*> all{argv[0]};
-  for (const std::string& word : words) all.push_back(word.c_str());
-  return run_program(g4_ros2, static_cast<int>(all.size()), all.data());
+  return run_program(g4_ros2, argc, argv);
 }

@@ -18,7 +18,6 @@
 #include "lidar_node.hpp"
 #include "merger.hpp"
 #include "node_announcement.hpp"
-#include "node_services.hpp"
 #include "run_command.hpp"
 
 namespace g4_tool {
@@ -41,11 +40,6 @@ class node {
       lidars_.push_back(std::make_unique<lidar_node>(
           bus_, options_, each, merger_ ? &*merger_ : nullptr, lidars_.size()));
     }
-    std::vector<lidar_node*> all;
-    all.reserve(lidars_.size());
-    for (const auto& each : lidars_) all.push_back(each.get());
-    services_ = std::make_unique<node_services>(bus_, options_, all);
-    lidars_.front()->also_report([this] { return services_->status(); });
     if (merger_) {
       for (auto& each : merger_->reports()) lidars_.front()->also_report(std::move(each));
     }
@@ -68,7 +62,6 @@ class node {
         if (announcement_) announcement_->update();
         network_due_ = now + network_interval;
       }
-      services_->update();
       if (run_) run_->update();
       for (const auto& each : lidars_) each->update();
       report();
@@ -112,7 +105,6 @@ class node {
   const ros2_options& options_;
   dds::bus bus_;
   std::optional<merger> merger_;
-  std::unique_ptr<node_services> services_;  // the threads of the lidars end before it
   std::vector<std::unique_ptr<lidar_node>> lidars_;
   std::optional<run_command> run_;
   std::optional<node_announcement> announcement_;

@@ -11,7 +11,6 @@
 
 #include <messages.h>
 #include "cli/logger.hpp"
-#include "service_messages.hpp"
 
 namespace g4_tool {
 namespace {
@@ -46,6 +45,13 @@ std::vector<dds_entity_t> children_of(dds_entity_t parent) {
     all.resize(known);
     if (is_all) return all;
   }
+}
+
+/// `parts` become the contents of a sequence, which does not own them.
+template <class Sequence, class Part>
+void refer(Sequence& sequence, std::vector<Part>& parts) {
+  sequence._length = sequence._maximum = static_cast<std::uint32_t>(parts.size());
+  sequence._buffer = parts.data();
 }
 
 template <class Message>

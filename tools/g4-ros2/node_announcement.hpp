@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The topic that informs ROS 2 about the publishers, subscriptions and services of each node.
+// The topic that informs ROS 2 about the publishers and subscriptions of each node.
 #pragma once
 
 #include <cstddef>

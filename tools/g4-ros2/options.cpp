@@ -43,8 +43,8 @@ option_row frame_name_row(const char* names, const char* help, std::string& into
 option_rows topic_rows(ros2_options& options) {
   topic_names& topics = options.topics;
   const option_row node_row =
-      checked(text_row("--node-name", "NAME", "Name of the node, and of its services (g4lidar)",
-                       options.node, completion::nothing),
+      checked(text_row("--node-name", "NAME", "Name of the node (g4lidar)", options.node,
+                       completion::nothing),
               [](const std::string& word) {
                 check_length(word);
                 if (!is_lidar_name(word))
@@ -52,8 +52,8 @@ option_rows topic_rows(ros2_options& options) {
               });
   return in_group(
       "Topics and frames",
-      {name_row("--namespace", "Namespace of the topics and services (/)", options.name_space),
-       node_row, topic_row("--scan-topic", "LaserScan messages; off: none (scan)", topics.scan),
+      {name_row("--namespace", "Namespace of the topics (/)", options.name_space), node_row,
+       topic_row("--scan-topic", "LaserScan messages; off: none (scan)", topics.scan),
        topic_row("--points-topic", "PointCloud2 messages; off: none (points)", topics.points),
        topic_row("--diagnostics-topic", "DiagnosticArray messages; off: none (/diagnostics)",
                  topics.diagnostics),
@@ -93,10 +93,7 @@ option_rows network_rows(ros2_options& options) {
                   choices<announced_form>{{"auto", announced_form::automatic},
                                           {"none", announced_form::none},
                                           {"humble", announced_form::humble},
-                                          {"iron", announced_form::iron}}),
-       choice_row("--services", "Offer services, for rmw_cyclonedds_cpp (by RMW_IMPLEMENTATION)",
-                  transport.has_services,
-                  choices<std::optional<bool>>{{"on", true}, {"off", false}})});
+                                          {"iron", announced_form::iron}})});
 }
 
 option_rows place_rows(ros2_options& options) {
@@ -119,31 +116,6 @@ option_rows device_and_player_rows(ros2_options& options) {
                                               options.is_standby))),
       device_rows(options.common),
       player_rows(options.source.playback.speed, options.source.playback.loop));
-}
-
-/// no_return of "--no-return".
-std::string parameter_name_of(const option_row& row) {
-  std::string name = row.names.substr(2);
-  std::ranges::replace(name, '-', '_');
-  return name;
-}
-
-/// The rows of filters, which also store their words for the parameters.
-option_rows filter_rows_of(ros2_options& options) {
-  common_options& common = options.common;
-  option_rows rows =
-      joined(filter_rows(common), near_row(common.marks.near), grid_rows(common.grid));
-  for (option_row& row : rows) {
-    const auto at = options.filter_words.find(parameter_name_of(row));
-    if (at == options.filter_words.end()) continue;
-    row.take = [&into = at->second, adds = row.repeatable,
-                inner = row.take](const std::string& word) {
-      inner(word);
-      if (!adds) into.clear();
-      into += (into.empty() ? "" : " ") + (word.empty() ? "on" : word);
-    };
-  }
-  return rows;
 }
 
 /// Refuses two uses of one topic, which can have only one type.
@@ -212,7 +184,9 @@ std::vector<named_source> sources_of(const ros2_options& options) {
 option_rows ros2_rows(const std::shared_ptr<ros2_options>& shared) {
   ros2_options& options = *shared;
   return joined(topic_rows(options), scan_rows(options), place_rows(options),
-                filter_rows_of(options), network_rows(options), device_and_player_rows(options),
+                joined(filter_rows(options.common), near_row(options.common.marks.near),
+                       grid_rows(options.common.grid)),
+                network_rows(options), device_and_player_rows(options),
                 in_group("End condition", {duration_row(options.common)}));
 }
 

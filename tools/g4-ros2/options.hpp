@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
-// The options, from the command line, the file of --config and the arguments of ROS 2.
+// The options, from the command line and the file of --config.
 #pragma once
 
 #include <cstdint>
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -49,7 +48,6 @@ struct delivery {
   bool is_reliable = true;
   int depth = 5;
   announced_form announced = announced_form::automatic;
-  std::optional<bool> has_services{};  ///< Nothing: by RMW_IMPLEMENTATION.
 };
 
 struct ros2_options {
@@ -66,10 +64,6 @@ struct ros2_options {
   delivery transport;
   scan_order order = scan_order::angle;
   std::optional<std::uint32_t> bins;  ///< default_bins() of the model.
-  /// The values of the filters, as their options take them, by the names of the parameters.
-  std::map<std::string, std::string> filter_words{
-      {"edges", "off"},   {"fov", "-180:180"},  {"ignore", ""},    {"near", "off"},
-      {"near_as", "nan"}, {"no_return", "inf"}, {"speckle", "off"}};
   bool merges = false;
   bool is_standby = false;
 };
@@ -88,10 +82,5 @@ struct ros2_options {
 
 /// The table of options, which writes into `options`.
 [[nodiscard]] option_rows ros2_rows(const std::shared_ptr<ros2_options>& options);
-
-/// Converts the words after `--ros-args` to options of this program: `-r __ns:=/x` to `--namespace /x`,
-/// `-p grid:=360` to `--grid 360`. Throws bad_value for invalid ones.
-[[nodiscard]] std::vector<std::string> without_ros_arguments(const std::vector<std::string>& words,
-                                                             const option_rows& rows);
 
 }  // namespace g4_tool

@@ -26,7 +26,6 @@ struct domain_log {
   std::set<std::string> lines;  // that were logged
   bool is_creating = false;     // a domain: its errors are not logged
   std::string trouble;          // the first one of them
-  std::uint64_t undecoded = 0;  // requests to services
 };
 
 domain_log& the_log() {
@@ -54,7 +53,6 @@ void log_line(void*, const dds_log_data_t* line) {
     if (log.trouble.empty()) log.trouble = reason_in(text);
     return;
   }
-  if (text.find("deserialization rq/") != std::string_view::npos) ++log.undecoded;
   if (log.lines.size() > most_lines) log.lines.clear();
   if (!log.lines.emplace(text).second) return;
   const std::string words = fmt::format("Cyclone DDS: {}\n", text);
@@ -88,12 +86,6 @@ bool has_descriptors() {
 }
 
 }  // namespace
-
-std::uint64_t undecoded_requests() {
-  domain_log& log = the_log();
-  const std::lock_guard lock(log.mutex);
-  return log.undecoded;
-}
 
 void wake(void* handle) noexcept {
   static_cast<void>(::eventfd_write(*static_cast<const int*>(handle), 1));
@@ -194,8 +186,8 @@ void bus::open() {
   } else if (!wanted_.interface.empty()) {
     reach += ", " + wanted_.interface;
   }
-  logger::info(fmt::format("joined the ROS 2 domain {} ({}): publishing {}{}\n", wanted_.domain,
-                           reach, fmt::join(topics, ", "), more_words_));
+  logger::info(fmt::format("joined the ROS 2 domain {} ({}): publishing {}\n", wanted_.domain,
+                           reach, fmt::join(topics, ", ")));
   problem_.clear();
   is_new_ = false;
   for (endpoint* each : endpoints_) each->open(made, &wake_);

@@ -22,7 +22,7 @@ class bus;
 /// The name of the participant of each program like this one in its domain.
 constexpr const char* participant_name = "g4-ros2";
 
-/// A publisher, subscription or service, which is opened each time the domain is created. Constructed and
+/// A publisher or subscription, which is opened each time the domain is created. Constructed and
 /// destroyed in the thread of the bus.
 class endpoint {
  public:
@@ -41,9 +41,6 @@ class endpoint {
  private:
   bus& on_;
 };
-
-/// The messages to services that Cyclone DDS could not decode, of this process. *Any thread.*
-[[nodiscard]] std::uint64_t undecoded_requests();
 
 /// For listeners whose argument is the handle of a bus: makes the handle readable.
 void wake(void* handle) noexcept;
@@ -64,13 +61,11 @@ class bus {
   /// Creates the domain if there is none, or again if the network has changed. Call it about once a second.
   /// An error is logged once. The first call throws bad_value if CYCLONEDDS_URI is refused.
   void update();
-  /// Appends words to the line that is logged when the domain is joined.
-  void also_log(const std::string& words) { more_words_ += "; " + words; }
   /// Closes all endpoints and the domain, so that subscribers are informed at once.
   void close() noexcept;
   [[nodiscard]] bool is_up() const noexcept { return static_cast<bool>(participant_); }
 
-  /// For poll(): readable after a change of subscribers or a request, until clear().
+  /// For poll(): readable after a change of subscribers or a message, until clear().
   [[nodiscard]] int handle() const noexcept { return wake_; }
   void clear() const noexcept;
 
@@ -83,9 +78,8 @@ class bus {
   std::vector<std::string> on_;  // the addresses when the domain was created
   entity domain_;
   entity participant_;
-  std::string more_words_;  // of the line about the domain
-  std::string problem_;     // the last logged one
-  bool is_new_ = true;      // before the first attempt to create a domain
+  std::string problem_;  // the last logged one
+  bool is_new_ = true;   // before the first attempt to create a domain
 };
 
 /// A published topic and its quality of service.

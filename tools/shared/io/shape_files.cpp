@@ -69,16 +69,6 @@ shaping_options shape_of(const common_options& how, const g4lidar::mask& loaded)
   return made;
 }
 
-lidar_parameters parameters_of(const common_options& how,
-                               const std::map<std::string, std::string>& words, bool merges,
-                               scan_shaper& shaper) {
-  shaping_options shape = shape_of(how, {});
-  shape.for_merging = merges;
-  shape.restamps = true;  // nobody is to deskew the points of a message again
-  const filter_settings start{shape.filter, how.ignored, how.marks, how.grid};
-  return {shape, start, mask_in(how.mask), words, shaper};
-}
-
 std::vector<stamped_pose> load_odometry(const std::string& path) {
   const std::string what_to_give = "Give a file with lines 'time_ns x y yaw_rad'.";
   input in(path, what_to_give);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Filters as parameters, on a scan that is written here.
-#include "io/shape_files.hpp"
+#include "g4lidar/lidar_parameters.hpp"
 
 #include <gmock/gmock.h>
 
@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <map>
 #include <memory>
 #include <set>
 #include <string>
@@ -15,18 +16,17 @@
 #include <vector>
 
 #include "g4lidar/scan_shaper.hpp"
-#include "options.hpp"
 
-namespace ros2 {
+namespace g4lidar::test {
 namespace {
 
 using ::testing::HasSubstr;
 
 TEST(LimitedRow, HasTheValuesOfTheModel) {
   const auto row = [](const char* name, const char* word) {
-    return limited_to(*g4lidar::model_named(word), *g4lidar::find_parameter(name));
+    return limited_to(*model_named(word), *find_parameter(name));
   };
-  const g4lidar::parameter& all = *g4lidar::find_parameter("sample_rate");
+  const parameter& all = *find_parameter("sample_rate");
   EXPECT_EQ(all.constraints, "4000, 6000, 8000, 9000, 10000, 16000, 18000, 20000");
   EXPECT_EQ(row("sample_rate", "f4-pro").constraints, "4000, 6000");
   EXPECT_EQ(row("sample_rate", "g6").constraints, "8000, 16000, 18000");
@@ -41,7 +41,7 @@ TEST(LimitedRow, HasTheValuesOfTheModel) {
 }
 
 TEST(ConvertedValue, IsAsPeopleWriteIt) {
-  using value = g4lidar::parameter_value;
+  using value = parameter_value;
   const std::int64_t nine = 9;
   const std::string fast = "fast";
   constexpr double infinite = std::numeric_limits<double>::infinity();
@@ -65,84 +65,75 @@ TEST(ConvertedValue, IsAsPeopleWriteIt) {
                         {std::string(), {none, none, none, std::string()}},
                         {none, {none, none, none, none}}}) {
     for (std::uint8_t type = 1; type <= to.size(); ++type)
-      EXPECT_EQ(g4lidar::converted(from, type), to.at(type - 1U))
-          << from.index() << " to " << int{type};
+      EXPECT_EQ(converted(from, type), to.at(type - 1U)) << from.index() << " to " << int{type};
   }
 }
 
-/// A lidar with these options: walls in 2 m and, from 300 degrees on, in 4 m; a speck before the wall at 200 degrees,
+/// A lidar without filters: walls in 2 m and, from 300 degrees on, in 4 m; a speck before the wall at 200 degrees,
 /// and a veiling point between the walls at 299.
 class filtered {
  public:
-  explicit filtered(const std::vector<std::pair<std::string, std::string>>& given = {}) {
-    options_->common.frame = g4lidar::frame::robot;
-    for (const auto& [name, word] : given) {
-      for (const g4_tool::option_row& row : g4_tool::ros2_rows(options_)) {
-        if (row.names == name) row.take(word);
-      }
-    }
-    parameters_ = std::unique_ptr<g4lidar::lidar_parameters>(new g4lidar::lidar_parameters(
-        g4_tool::parameters_of(options_->common, options_->filter_words, false, *shaper_)));
+  filtered() {
+    filter_settings start;
+    start.filter.in = frame::robot;
+    const std::map<std::string, std::string> words{
+        {"edges", "off"},   {"fov", "-180:180"},  {"ignore", ""},    {"near", "off"},
+        {"near_as", "nan"}, {"no_return", "inf"}, {"speckle", "off"}};
+    parameters_ =
+        std::make_unique<lidar_parameters>(shaping_options{}, start, mask{}, words, shaper_);
     for (int i = 0; i < 360; ++i) {
-      g4lidar::point& made = points_.emplace_back();
+      point& made = points_.emplace_back();
       made.angle_deg = static_cast<float>(i);
       made.range_mm = i == 200 ? 1000.0F : i < 299 ? 2000.0F : i == 299 ? 3000.0F : 4000.0F;
     }
   }
   /// Why not, or empty.
-  std::string set(const std::string& name, g4lidar::parameter_value to) {
-    return parameters_->change(nullptr, std::vector<g4lidar::named_value>{{name, std::move(to)}});
+  std::string set(const std::string& name, parameter_value to) {
+    return parameters_->change(nullptr, std::vector<named_value>{{name, std::move(to)}});
   }
   [[nodiscard]] std::string value(const char* name) const {
-    return std::get<std::string>(parameters_->value(*g4lidar::find_parameter(name)));
+    return std::get<std::string>(parameters_->value(*find_parameter(name)));
   }
   /// The angles of the device that are missing in the cloud.
   std::set<int> missing() {
     std::set<int> all;
     for (int i = 0; i < 360; ++i) all.insert(i);
-    g4lidar::scan whole;
+    scan whole;
     whole.points = points_;
-    shaper_->shape(whole);
-    for (const auto& each : shaper_->kept()) {
+    shaper_.shape(whole);
+    for (const auto& each : shaper_.kept()) {
       all.erase(static_cast<int>(each.angle_deg));
     }
     return all;
   }
 
   /// How a grid is filled.
-  [[nodiscard]] g4lidar::grid_options grid() const { return parameters_->filters().grid; }
+  [[nodiscard]] grid_options grid() const { return parameters_->filters().grid; }
   /// Something at 0.4 m, in a revolution of one point.
   void come_near() {
-    const g4lidar::point near{.angle_deg = 100.0F, .range_mm = 400.0F};
-    g4lidar::scan whole;
+    const point near{.angle_deg = 100.0F, .range_mm = 400.0F};
+    scan whole;
     whole.points = {&near, 1};
-    shaper_->shape(whole);
+    shaper_.shape(whole);
   }
   /// The flagged points of the next revolution, in which that beam has no return.
   std::size_t flagged() {
-    const g4lidar::point none{
-        .angle_deg = 96.9F, .revolution = 1, .flags = g4lidar::point_flags::no_return};
-    g4lidar::scan whole;
+    const point none{.angle_deg = 96.9F, .revolution = 1, .flags = point_flags::no_return};
+    scan whole;
     whole.points = {&none, 1};
-    shaper_->shape(whole);
-    return shaper_->for_grid().points.front().may_be_too_near() ? 1 : 0;
+    shaper_.shape(whole);
+    return shaper_.for_grid().points.front().may_be_too_near() ? 1 : 0;
   }
 
  private:
-  std::shared_ptr<g4_tool::ros2_options> options_ = std::make_shared<g4_tool::ros2_options>();
-  std::unique_ptr<g4lidar::scan_shaper> shaper_ = std::make_unique<g4lidar::scan_shaper>();
-  std::unique_ptr<g4lidar::lidar_parameters> parameters_;
-  std::vector<g4lidar::point> points_;
+  scan_shaper shaper_;
+  std::unique_ptr<lidar_parameters> parameters_;
+  std::vector<point> points_;
 };
 
-TEST(FilterParameters, AreThoseOfTheCommandLine) {
+TEST(FilterParameters, AreThoseOfTheStart) {
   EXPECT_EQ(filtered().value("ignore"), "");
   EXPECT_EQ(filtered().value("speckle"), "off");
-  const filtered given(
-      {{"--ignore", "30:40"}, {"--ignore", "90:100"}, {"--speckle", ""}, {"--edges", "angle=9"}});
-  EXPECT_EQ(given.value("ignore"), "30:40 90:100");
-  EXPECT_EQ(given.value("speckle"), "on");
-  EXPECT_EQ(given.value("edges"), "angle=9");
 }
 
 TEST(FilterParameters, DirectionsAreLeftOutFromNowOn) {
@@ -176,8 +167,10 @@ TEST(FilterParameters, SpecksAreLeftOutFromNowOn) {
 }
 
 TEST(FilterParameters, RangesWithoutReturn_ChangeFromNowOn) {
-  using enum g4lidar::no_return_as;
-  filtered lidar({{"--no-return", "max"}, {"--near", ""}});
+  using enum no_return_as;
+  filtered lidar;
+  EXPECT_EQ(lidar.set("no_return", "max"), "");
+  EXPECT_EQ(lidar.set("near", true), "");
   EXPECT_EQ(lidar.value("no_return"), "max");
   EXPECT_EQ(lidar.value("near"), "on");
   EXPECT_EQ(lidar.value("near_as"), "nan");
@@ -216,4 +209,4 @@ TEST(FilterParameters, VeilingPointsAreLeftOutFromNowOn) {
 }
 
 }  // namespace
-}  // namespace ros2
+}  // namespace g4lidar::test
