@@ -30,6 +30,12 @@ source_reader::source_reader(const common_options& options, const lidar_options&
           }(),
           wanted, this) {}
 
+reader_state source_reader::state() const {
+  const reader_state now = reader_.status().state;
+  const std::lock_guard lock(mutex_);
+  return now == reader_state::ended ? handled_ : now;
+}
+
 std::string source_reader::why() const {
   const std::lock_guard lock(mutex_);
   return why_;
@@ -83,6 +89,8 @@ void source_reader::on_state(reader_state state, const std::optional<error>& why
     const std::lock_guard lock(mutex_);
     if (failed && state == reader_state::ended) failure_ = std::make_exception_ptr(*failed);
   });
+  const std::lock_guard lock(mutex_);
+  handled_ = state;
 }
 
 std::optional<g4_tool::failure> source_reader::failure_after(const error& why) const {

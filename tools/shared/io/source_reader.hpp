@@ -31,7 +31,8 @@ class source_reader final : private reader_listener {
   void stop() { reader_.stop(); }
   [[nodiscard]] background_reader& reader() noexcept { return reader_; }
   [[nodiscard]] const background_reader& reader() const noexcept { return reader_; }
-  [[nodiscard]] reader_state state() const { return reader_.status().state; }
+  /// `ended` not before failure() states why.
+  [[nodiscard]] reader_state state() const;
 
   /// The sentences of reader_status::why; empty at the end of a file, and after a signal.
   [[nodiscard]] std::string why() const;
@@ -59,10 +60,11 @@ class source_reader final : private reader_listener {
   reader_listener& listener_;
   running_diagnosis diagnosis_;
   const sim::simulated_source* simulation_ = nullptr;
-  mutable std::mutex mutex_;  // protects the next two
+  mutable std::mutex mutex_;  // protects the next three
   std::string why_;
   std::exception_ptr failure_;
-  background_reader reader_;  // its thread ends first
+  reader_state handled_ = reader_state::opening;  // the last one of which the listener knows
+  background_reader reader_;                      // its thread ends first
 };
 
 }  // namespace g4_tool
