@@ -64,10 +64,12 @@ TEST_F(SourceReader, MissingFile_EndsEvenWhereItWouldWait) {
 
 TEST_F(SourceReader, FileWithoutAPacket_IsAnErrorThatNamesIt) {
   std::ofstream(path("notes.txt")) << std::string(1000, 'x');
-  expect_end(path("notes.txt"), loss_rule::wait, exit_code::bad_file, "no point packet");
+  expect_end(path("notes.txt"), loss_rule::wait, exit_code::bad_file, "This is text");
   expect_end(path("notes.txt"), loss_rule::wait, exit_code::bad_file, "notes.txt");
+  std::ofstream(path("noise.bin")) << std::string(1000, '\x17');
+  expect_end(path("noise.bin"), loss_rule::wait, exit_code::bad_file, "no point packet");
   // As a user meets it: it ends, and does not wait for a revolution.
-  const auto viewed = cli::run({"view", "--once", path("notes.txt")});
+  const auto viewed = cli::run({"view", "--once", path("noise.bin")});
   EXPECT_EQ(viewed.code, 10);
   EXPECT_THAT(viewed.err, HasSubstr("no point packet"));
 }
