@@ -59,28 +59,13 @@ struct tcp_use {
   }
 };
 
-struct file_use {
-  temporary_file file{"answer"};
-  static constexpr std::array uses{call::open,    call::close, call::fstat,
-                                   call::eventfd, call::ppoll, call::read};
-
-  result<void> use() const {
-    auto port = open_file_transport(file.path(), {.bytes_per_second = 20'000}, faulty_calls());
-    if (!port) return tl::unexpected(port.error());
-    const auto got = read_text(**port, 6);
-    if (!got) return tl::unexpected(got.error());
-    EXPECT_EQ(*got, "answer");
-    return (*port)->pause(in(**port, 1ms));
-  }
-};
-
 template <class Use>
 class SystemCalls : public testing::Test {
  public:
   ~SystemCalls() override { set_fault({}); }
 };
 
-using uses = testing::Types<serial_use, tcp_use, file_use>;
+using uses = testing::Types<serial_use, tcp_use>;
 TYPED_TEST_SUITE(SystemCalls, uses);
 
 /// Uses the port with the fault; no descriptor is left open in any case.
@@ -262,16 +247,6 @@ TEST(TcpCalls, Failing_IsReported) {
       {call::read, ECONNRESET, task::reading, problem::gone},
       {call::read, ETIMEDOUT, task::reading, problem::gone},
       {call::send, EPIPE, task::writing, problem::gone},
-  });
-}
-
-TEST(FileCalls, Failing_IsReported) {
-  expect_reported<file_use>({
-      {call::open, EACCES, task::opening, problem::system},
-      {call::fstat, EIO, task::opening, problem::system},
-      {call::eventfd, EMFILE, task::opening, problem::system},
-      {call::ppoll, ENOMEM, task::reading, problem::system},
-      {call::read, EIO, task::reading, problem::system},
   });
 }
 
