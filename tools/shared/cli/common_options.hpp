@@ -81,8 +81,9 @@ struct common_options {
   std::optional<mounting> mount;
   g4lidar::frame frame = g4lidar::frame::vendor;
   length_unit unit = length_unit::millimetres;
-  std::optional<time_style> time;  ///< Nothing: the default depends on the source.
-  loss_rule on_loss = loss_rule::exit;
+  std::optional<time_style> time;    ///< Nothing: the default depends on the source.
+  std::optional<loss_rule> on_loss;  ///< Of --on-loss.
+  loss_rule usual_on_loss = loss_rule::exit;
   bool json = false;
 };
 
@@ -141,7 +142,7 @@ void note_order(scan_order chosen);
 [[nodiscard]] option_row all_ports_row(common_options& options);
 /// --zero-angle.
 [[nodiscard]] option_row zero_row(common_options& options);
-/// --on-loss with the present value of `options` as default, --baud, --model, --zero-angle, --listen, --all-ports.
+/// --on-loss with options.usual_on_loss as default, --baud, --model, --zero-angle, --listen, --all-ports.
 [[nodiscard]] option_rows device_rows(common_options& options);
 
 }  // namespace g4_tool
