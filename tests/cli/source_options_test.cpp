@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Each option about the source, with each verb that has it and each kind of source: what the documents say that the
-// source can use is used, and all else is refused with what to do.
+// Each option about the source, with each verb that has it and each kind of source: it is used where the documents
+// state so, and refused elsewhere, with the advice.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -49,7 +49,7 @@ the subscribed odometry topic.)";
 verb make_verb() {
   const auto options = std::make_shared<ros2_options>();
   options->common.frame = frame::robot;
-  options->common.usual_on_loss = loss_rule::wait;
+  options->common.on_loss.usual = loss_rule::wait;
   return {.name = "g4-ros2",
           .summary = "Publish lidars as ROS 2 topics",
           .arguments = {named_source_arguments(

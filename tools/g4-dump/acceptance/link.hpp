@@ -28,7 +28,7 @@ namespace g4_tool::acceptance {
 inline constexpr std::int64_t spun_up_ns = 3'000 * ms;
 /// After this time without a scan it stands.
 inline constexpr std::int64_t run_down_ns = 3'000 * ms;
-/// A survey of at most this length tells no rates if it is not steady.
+/// A survey of at most this length gives no rates if it is not steady.
 inline constexpr std::int64_t short_survey_ns = 5'000 * ms;
 inline constexpr std::string_view not_steady =
     "The packets came irregularly: this computer was too busy to measure the rates.";

@@ -214,7 +214,7 @@ void refuse_options_of_others(const common_options& options, const lidar_options
                       .insist_on_model = expected.insists,
                       .listen_only = expected.listens,
                       .baud = expected.baud,
-                      .reconnect = options.on_loss.has_value(),
+                      .reconnect = options.on_loss.given.has_value(),
                       .playback = how.playback,
                       .raw_sample_rate_hz = how.raw_sample_rate_hz};
   if (given.playback.speed == as_recorded) given.playback.speed = lidar_options().playback.speed;
@@ -268,7 +268,7 @@ lidar_options options_for(const common_options& options, lidar_options how) {
   how.zero_angle = options.expected.zero;
   how.probe_all_ports = options.expected.all_ports;
   how.insist_on_model = options.expected.insists;
-  const loss_rule at_loss = options.on_loss.value_or(options.usual_on_loss);
+  const loss_rule at_loss = options.on_loss.given.value_or(options.on_loss.usual);
   how.reconnect = at_loss != loss_rule::exit;
   // A file that is missing is not waited for.
   if (at_loss == loss_rule::wait && !is_file_name(options.source))
