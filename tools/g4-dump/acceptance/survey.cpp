@@ -132,17 +132,15 @@ double stream_survey::per_second(std::uint64_t count) const noexcept {
 
 bool stream_survey::is_steady() const {
   constexpr std::size_t fewest = 3;
-  constexpr double least_ns = 20e6;  // as USB bridges hold bytes back
   constexpr double part = 0.02;
-  if (zeros_.size() < fewest) return counts.packets == 0;
+  if (zeros_.size() < fewest) return false;
   const arrival& first = zeros_.front();
   const auto all_ns = static_cast<double>(way_ns(first.time_ns, zeros_.back().time_ns));
   const auto samples = static_cast<double>(zeros_.back().samples);
-  const double allowed_ns = std::max(least_ns, part * all_ns);
   return std::ranges::all_of(zeros_, [&](const arrival& each) {
     const double due_ns = all_ns * static_cast<double>(each.samples) / samples;
-    return std::abs(static_cast<double>(way_ns(first.time_ns, each.time_ns)) - due_ns) <=
-           allowed_ns;
+    return std::abs(static_cast<double>(way_ns(first.time_ns, each.time_ns)) - due_ns) <
+           part * all_ns;
   });
 }
 
