@@ -64,7 +64,7 @@ enum class source_kind : std::uint8_t {
 
 /// Which of the options the source that `options.device` names cannot use, as an error; nothing if it can use all.
 /// A file has no connection and no settings: `baud`, `reconnect`, the settings, and of the tuning all but `batch` and
-/// `transport_delay` are for lidars. `playback` is for files, and `raw_sample_rate_hz` for files of raw bytes; a pipe has
+/// `transport_delay` are for lidars, and `probe_all_ports` for ports. `playback` is for files, and `raw_sample_rate_hz` for files of raw bytes; a pipe has
 /// neither. lidar::open() and connector_for() fail with this error: bad_option, with the detail other_source.
 [[nodiscard]] G4LIDAR_API std::optional<error> problem_with_source(const lidar_options& options);
 /// The same options without these: for a program that opens whatever its user names.

@@ -117,9 +117,9 @@ def test_pause_and_speed_from_another_thread(recorded: tuple[Path, list[g4lidar.
         player.pause()
         assert player.is_paused and player.speed == 1e-6
         found: list[int] = []
-        waiting = threading.Thread(target=lambda: found.extend(len(scan) for scan in lidar.scans(timeout=0.01)))
+        waiting = threading.Thread(target=lambda: found.extend(len(scan) for scan in lidar.scans(timeout=0.3)))
         waiting.start()
-        waiting.join(0.5)
+        waiting.join(1)
         assert waiting.is_alive() and not found and player.position < 0.001  # a pause is no timeout
         player.speed = 1000
         player.pause(False)

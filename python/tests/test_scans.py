@@ -196,6 +196,14 @@ def test_a_motor_that_never_spins_up_ends_the_loop_after_10_s(g4_simulator: Make
         assert not lidar.is_spinning_up
 
 
+def test_a_timeout_with_a_slow_motor_states_that_packets_arrive(g4_simulator: Make) -> None:
+    with g4lidar.open(g4_simulator(acceleration_mhz_per_s=5)) as lidar:  # a quarter of a turn in 10 s
+        lidar.start()
+        with pytest.raises(errors.Timeout, match="packets arrive, but no revolution") as caught:
+            next(lidar.scans(timeout=0.3))
+        assert "nplug" not in str(caught.value)
+
+
 def test_a_lost_lidar_is_waited_for_without_limit(g4_simulator: Make) -> None:
     with g4lidar.open(g4_simulator(faults=["unplug@4s+60s"]), reconnect=True) as lidar:
         lidar.start()

@@ -181,7 +181,8 @@ constexpr std::array<detail_words, 23> all_details{{
      "Check the adapter, or the network and its bridge. If it fails again, unplug the lidar and "
      "plug it in again."},
     {"the source cannot use this option",
-     "Omit the option: a port has no playback, and a file has no settings and no connection."},
+     "Omit the option: a lidar has no playback, a file has no settings and no connection, and only "
+     "ports are searched."},
     {"parts of this recording state different models of lidar",
      "Recordings of two lidars have been joined, or the file is damaged: use the recording of each "
      "lidar by itself."},

@@ -67,8 +67,11 @@ view_result<scan> background_reader::next_scan(lidar::milliseconds timeout) {
   const auto wait = std::clamp(timeout, lidar::milliseconds(0), longest);
   if (thread_->queue) {
     // In its own thread no scan would come.
-    const auto until = std::chrono::steady_clock::now() + (thread_->is_own() ? 0ms : wait);
-    if (const auto found = thread_->queue->scans.take(until)) return *found;
+    using clock = std::chrono::steady_clock;
+    const auto until = clock::now() + (thread_->is_own() ? 0ms : wait);
+    do {  // a seek may continue a file that has ended
+      if (const auto found = thread_->queue->scans.take(until)) return *found;
+    } while (clock::now() < until && !failed() && !thread_->requests.has_to_stop());
   }
   if (const auto why = failed()) return tl::unexpected(*why);
   const bool stopped = thread_->requests.has_to_stop();

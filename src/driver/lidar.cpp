@@ -102,7 +102,7 @@ result<lidar> lidar::open(std::unique_ptr<connector> from, const lidar_options& 
   if (stated != nullptr) used.model = stated;
   if (behind.recognised.is_silent) used.listen_only = true;
   if (used.model == nullptr) used.model = &g4_model;
-  const option_users users = behind.answers ? live : recording | raw_file | pipe;
+  const option_users users = behind.answers ? live | port : recording | raw_file | pipe;
   if (const auto wrong = problem_with_users(used, users)) return tl::unexpected(*wrong);
   // Where the port could not be opened, there is no model that could refuse a setting.
   const bool is_missing = behind.is_searched && stated == nullptr;

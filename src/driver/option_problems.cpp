@@ -65,7 +65,7 @@ constexpr std::array option_rows{
     row("baud", live, [](auto& of) -> auto& { return of.baud; }),
     row("insist_on_model", live, [](auto& of) -> auto& { return of.insist_on_model; }),
     row("listen_only", live, [](auto& of) -> auto& { return of.listen_only; }),
-    row("probe_all_ports", live, [](auto& of) -> auto& { return of.probe_all_ports; }),
+    row("probe_all_ports", port, [](auto& of) -> auto& { return of.probe_all_ports; }),
     row("sample_rate", live, [](auto& of) -> auto& { return of.sample_rate; }),
     row("frequency", live, [](auto& of) -> auto& { return of.frequency; }),
     row("direction", live, [](auto& of) -> auto& { return of.direction; }),
@@ -87,6 +87,7 @@ constexpr std::array option_rows{
 std::string_view words_for(option_users users) noexcept {
   switch (users) {
     case live:
+    case live | port:
       return "a live lidar";
     case recording:
       return "a recording";

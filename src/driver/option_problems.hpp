@@ -25,6 +25,7 @@ enum option_user : std::uint8_t {
   recording = 2,  ///< A file with times.
   raw_file = 4,   ///< A file of raw bytes.
   pipe = 8,       ///< Raw bytes as they come.
+  port = 16,      ///< Beside `live`: a port of this computer, which may be searched.
 };
 using option_users = std::uint8_t;
 

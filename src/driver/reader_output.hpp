@@ -22,7 +22,7 @@ class reader_queue final : public reader_listener {
     events_.put(what);
   }
   void on_state(reader_state state, const std::optional<error>& /*why*/) override {
-    if (state == reader_state::ended) scans.end();
+    state == reader_state::ended ? scans.end() : scans.go_on();
   }
   /// *Any thread.*
   [[nodiscard]] std::optional<lidar_event> next_event() {

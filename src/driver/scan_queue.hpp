@@ -43,13 +43,19 @@ class scan_queue {
     changed_.notify_one();
   }
 
-  /// No more scans follow, until put() is called again.
+  /// No more scans follow, until put() or go_on() is called.
   void end() {
     {
       const std::lock_guard lock(mutex_);
       has_ended_ = true;
     }
     changed_.notify_all();
+  }
+
+  /// Scans may follow.
+  void go_on() {
+    const std::lock_guard lock(mutex_);
+    has_ended_ = false;
   }
 
   /// The oldest scan, valid until the next call; nothing if none arrived by the deadline, or no

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/number_text.hpp"
+#include "discovery/port_words.hpp"
 #include "discovery/system_connector.hpp"
 #include "g4lidar/recording/raw_bytes.hpp"
 #include "g4lidar/recording/replay.hpp"
@@ -45,17 +46,18 @@ named_parts divided(std::string_view name) {
   return {whole.substr(0, at), whole.substr(at + model_suffix.size())};
 }
 
-option_user user_of(source_kind kind, const std::string& path) {
+option_users users_of(source_kind kind, const std::string& path) {
   if (kind == source_kind::recording) return recording;
-  if (kind != source_kind::raw_bytes) return live;
+  if (kind == source_kind::simulated) return live;
+  if (kind == source_kind::device) return path.starts_with(tcp_prefix) ? live : live | port;
   struct stat found{};
   const bool is_there = (path == "-" ? ::fstat(0, &found) : ::stat(path.c_str(), &found)) == 0;
   const bool is_file = !is_there || S_ISREG(found.st_mode) || S_ISDIR(found.st_mode);
   return is_file ? raw_file : pipe;
 }
 
-option_user user_of(std::string_view name) {
-  return user_of(kind_of_source(name), path_of_source(name));
+option_users users_of(std::string_view name) {
+  return users_of(kind_of_source(name), path_of_source(name));
 }
 
 search_options known_of(const lidar_options& options, const model* named) {
@@ -188,7 +190,7 @@ result<std::unique_ptr<connector>> connector_for(const lidar_options& options, b
   if (wanted == nullptr && kind == source_kind::simulated) {
     known.model = model_of_source(options.device).value_or(nullptr);
   }
-  if (const auto wrong = problem_with_users(options, user_of(kind, path)))
+  if (const auto wrong = problem_with_users(options, users_of(kind, path)))
     return tl::unexpected(*wrong);
   const bool is_searched = wanted == nullptr && kind == source_kind::device;
   const auto wrong = is_searched ? problem_with_use(known) : problem_with(known);
@@ -209,12 +211,12 @@ result<std::unique_ptr<connector>> connector_for(const lidar_options& options, b
 }
 
 std::optional<error> problem_with_source(const lidar_options& options) {
-  return problem_with_users(options, user_of(options.device));
+  return problem_with_users(options, users_of(options.device));
 }
 
 lidar_options usable_options(lidar_options options) {
-  const option_user user = user_of(options.device);
-  return without_others(std::move(options), user);
+  const option_users users = users_of(options.device);
+  return without_others(std::move(options), users);
 }
 
 const sim::simulated_source* simulation_of([[maybe_unused]] const connector& from) noexcept {

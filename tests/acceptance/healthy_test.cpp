@@ -119,6 +119,38 @@ TEST(Acceptance, APauseInAShortScan_IsNoDifference) {
   EXPECT_NEAR(number_of(at(all, stream), "sample_rate_hz"), 9000.0, 90.0) << all_of(all);
 }
 
+// As where the computer was busy before: what had waited comes at once.
+TEST(Acceptance, WhatHadWaitedBeforeAShortScan_IsNoDifference) {
+  bench first("g4");
+  first.stream_time = std::chrono::seconds(2);
+  static_cast<void>(first.run());
+  // Up to the end of the scan, in which all comes at one time then.
+  for (std::int64_t length_ns = 100'000'000; length_ns < 2'600'000'000; length_ns += 100'000'000) {
+    bench of("g4");
+    of.stream_time = first.stream_time;
+    of.faults = {
+        sim::make_fault(sim::fault_kind::stall, first.begun_ns[stream] + 2'800'000'000, length_ns)};
+    const auto all = of.run();
+    EXPECT_EQ(at(all, stream).outcome, agrees) << length_ns << all_of(all);
+    EXPECT_NEAR(number_of(at(all, stream), "sample_rate_hz"), 9000.0, 90.0) << length_ns;
+  }
+}
+
+TEST(Acceptance, AComputerThatIsAlwaysBusy_MeasuresNoRates) {
+  bench of("g4");
+  of.stream_time = std::chrono::seconds(2);
+  constexpr std::int64_t each_ns = 700'000'000;
+  for (std::int64_t begin_ns = 0; begin_ns < 300'000'000'000; begin_ns += each_ns)
+    of.faults.push_back(sim::make_fault(sim::fault_kind::stall, begin_ns, each_ns / 2));
+  const auto all = of.run();
+  for (const step each : {sample_rate, stream}) {
+    EXPECT_EQ(at(all, each).outcome, observed) << all_of(all);
+    EXPECT_NE(at(all, each).text.find("too busy"), std::string::npos) << all_of(all);
+  }
+  for (const char* const rate : {"sample_rate_hz", "frequency_hz", "offset_hz"})
+    EXPECT_EQ(number_of(at(all, stream), rate), -1.0) << all_of(all);
+}
+
 // A motor stands for 60 ms, and reaches its 7 Hz with a constant acceleration. A revolution of it takes 143 ms.
 TEST(Acceptance, SteadyAfter_IsWhenTheMotorHasItsSpeed) {
   for (const std::uint32_t mhz_per_s : {14'000U, 4'667U}) {

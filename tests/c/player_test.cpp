@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <mutex>
 #include <string>
 #include <thread>
 
@@ -164,6 +165,7 @@ TEST_F(CPlayer, IsControlledInAThread) {
 struct own_calls {
   std::atomic<g4lidar_background*> reader = nullptr;
   std::atomic<int> count = 0;
+  std::mutex taking;  // scans, which one thread does at a time
 
   static bool make(void* context) {
     auto& self = *static_cast<own_calls*>(context);
@@ -172,6 +174,19 @@ struct own_calls {
     g4lidar_event event{};
     EXPECT_NE(g4lidar_background_get_state(of), 0);
     EXPECT_NE(g4lidar_background_next_event(of, &event), G4LIDAR_BAD_ARGUMENT);
+    {
+      const std::lock_guard lock(self.taking);
+      EXPECT_NE(g4lidar_background_get_counts(of), nullptr);
+      EXPECT_NE(g4lidar_background_get_playback(of), nullptr);
+      // No scan comes while it waits: it does not wait.
+      const std::int64_t begin_ns = g4lidar_now_ns();
+      const g4lidar_scan* kept = nullptr;
+      int code = G4LIDAR_OK;
+      while (code == G4LIDAR_OK)
+        code = g4lidar_background_next_scan(of, patience_ms, &kept, nullptr);
+      EXPECT_TRUE(code == G4LIDAR_TIMEOUT || code == G4LIDAR_END_OF_INPUT) << code;
+      EXPECT_LT(g4lidar_now_ns() - begin_ns, patience_ms * 500'000LL);
+    }
     EXPECT_EQ(g4lidar_background_rest(of, true), G4LIDAR_OK);
     EXPECT_EQ(g4lidar_background_rest(of, false), G4LIDAR_OK);
     EXPECT_EQ(g4lidar_background_pause(of, true), G4LIDAR_OK);
@@ -200,10 +215,26 @@ TEST_F(CPlayer, MayBeCalledByItsOwnThread) {
   const g4lidar_scan* scan = nullptr;
   EXPECT_EQ(g4lidar_background_seek(it.get(), 0), G4LIDAR_OK);  // the file is read again
   wait_until([&] {                                              // and on, as scans are taken
+    const std::lock_guard lock(calls.taking);
     static_cast<void>(g4lidar_background_next_scan(it.get(), 0, &scan, &why));
     return calls.count > 0;
   });
   EXPECT_EQ(calls.count, 1);
+  EXPECT_EQ(g4lidar_background_next_scan(it.get(), patience_ms, &scan, &why), G4LIDAR_OK)
+      << why.message;
+}
+
+// After the end of the file, and before the first scan of the new place.
+TEST_F(CPlayer, WaitsForAScanAfterASeek) {
+  const background it = read(play(), true);
+  ASSERT_NE(it, nullptr);
+  expect_state(it, G4LIDAR_ENDED);
+  const g4lidar_scan* scan = nullptr;
+  g4lidar_error why;
+  EXPECT_EQ(g4lidar_background_next_scan(it.get(), 0, &scan, &why), G4LIDAR_OK) << why.message;
+  EXPECT_EQ(g4lidar_background_set_speed(it.get(), 0.5, &why), G4LIDAR_OK);
+  EXPECT_EQ(g4lidar_background_seek(it.get(), 0), G4LIDAR_OK);
+  expect_state(it, G4LIDAR_RUNNING);
   EXPECT_EQ(g4lidar_background_next_scan(it.get(), patience_ms, &scan, &why), G4LIDAR_OK)
       << why.message;
 }

@@ -181,11 +181,12 @@ TEST_F(RecordingSource, OptionOfAnotherKindOfSource_IsRefused) {
     EXPECT_THAT(done.err, HasSubstr(why));
     EXPECT_EQ(done.out, "");
   };
-  const std::string lidar = "configuring raw_sample_rate_hz, and sim: is a live lidar: ";
+  const std::string lidar = "--sample-rate, and sim: is a live lidar: ";
   expect_refused({"dump", "sim:", "-n", "1", "--sample-rate", "4000"}, lidar);
   expect_refused({"record", "sim:", "-n", "1", path("new.mcap"), "--sample-rate", "4000"}, lidar);
-  expect_refused({"view", "--once", "sim:", "--loop"}, "loop, and sim: is a live lidar: ");
-  expect_refused({"scan", whole_, "--baud", "115200"}, "baud, and " + whole_ + " is a recording: ");
+  expect_refused({"view", "--once", "sim:", "--loop"}, "--loop, and sim: is a live lidar: ");
+  expect_refused({"scan", whole_, "--baud", "115200"},
+                 "--baud, and " + whole_ + " is a recording: ");
   expect_refused({"record", whole_, path("new.mcap"), "--sample-rate", "4000"}, "is a recording: ");
   EXPECT_FALSE(std::filesystem::exists(path("new.mcap")));
 }

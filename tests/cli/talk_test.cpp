@@ -104,6 +104,9 @@ TEST_F(Talk, Set_RefusesWithTheLimitsOfTheModel) {
   EXPECT_THAT(g4.err, HasSubstr("frequency: '40' is not in the range 5 to 12 Hz of a G4"));
   const outcome tg = run({"set", "sim:?model=tg15", "frequency=2"});
   EXPECT_THAT(tg.err, HasSubstr("frequency: '2' is not in the range 3 to 16 Hz of a TG15"));
+  for (const char* const change : {"frequency=40", "sample_rate=77k"})
+    EXPECT_THAT(run({"set", "sim:?model=x4", change}).err,
+                HasSubstr(": an X4 has no such setting"));
   const outcome named = run({"set", port(), "--model", "t-mini", "frequency=5"});
   EXPECT_THAT(named.err, HasSubstr("frequency: '5' is not in the range 6 to 12 Hz of a T-mini"));
 }

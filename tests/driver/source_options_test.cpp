@@ -28,7 +28,8 @@ struct option {
 const std::vector<option>& of_lidars() {
   static const std::vector<option> all{
       {"baud", [](auto& of) { of.baud = 115'200; }},
-      {"probe_all_ports", [](auto& of) { of.probe_all_ports = true; }},
+      {"insist_on_model", [](auto& of) { of.insist_on_model = true; }},
+      {"listen_only", [](auto& of) { of.listen_only = true; }},
       {"sample_rate", [](auto& of) { of.sample_rate = sample_rate::khz_8; }},
       {"frequency", [](auto& of) { of.frequency = scan_frequency::hz(10); }},
       {"direction", [](auto& of) { of.direction = motor_direction::clockwise; }},
@@ -52,6 +53,7 @@ const std::vector<option>& of_files() {
   };
   return all;
 }
+const option of_ports{"probe_all_ports", [](auto& of) { of.probe_all_ports = true; }};
 const option of_raw_files{"raw_sample_rate_hz", [](auto& of) { of.raw_sample_rate_hz = 9000; }};
 const std::vector<option>& of_all() {
   static const std::vector<option> all{
@@ -118,9 +120,13 @@ TEST_F(SourceOptions, OfALidar) {
     expect_used(name, of_lidars());
     expect_used(name, of_all());
   }
+  for (const std::string name : {"/dev/ttyNothing", "serial:2021101000070073", "usb:1-1.4", ""})
+    expect_used(name, {of_ports});
+  for (const std::string name : {"sim:", "tcp:127.0.0.1:9"}) expect_refused(name, {of_ports});
 }
 
 TEST_F(SourceOptions, OfARecording) {
+  expect_refused(recording_.text(), {of_ports});
   expect_refused(recording_.text(), of_lidars());
   expect_refused(recording_.text(), {of_raw_files});
   expect_used(recording_.text(), of_files());
@@ -131,6 +137,7 @@ TEST_F(SourceOptions, OfAFileOfRawBytes) {
   for (const std::string& name :
        {raw_.text(), "file:" + raw_.text(), std::string("file:nothing.bin")}) {
     expect_refused(name, of_lidars());
+    expect_refused(name, {of_ports});
     expect_used(name, of_files());
     expect_used(name, {of_raw_files});
     expect_used(name, of_all());
@@ -139,6 +146,7 @@ TEST_F(SourceOptions, OfAFileOfRawBytes) {
 
 TEST_F(SourceOptions, OfAPipe) {
   expect_refused(pipe_.text(), of_lidars());
+  expect_refused(pipe_.text(), {of_ports});
   expect_refused(pipe_.text(), of_files());
   expect_refused(pipe_.text(), {of_raw_files});
   expect_used(pipe_.text(), of_all());

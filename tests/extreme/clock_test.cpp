@@ -216,6 +216,11 @@ TEST(ExtremeClock, Session) {
       500);
   with_extremes<scan_need>([](scan_need need) { use(notice_of(need)); });
   with_extremes<response_kind>([](response_kind kind) { use(as_reply(kind)); });
+  with_extremes<response_kind, std::uint8_t>([](response_kind kind, std::uint8_t largest) {
+    const std::array<std::uint8_t, 5> content{largest, 0, 1, 255, 2};
+    EXPECT_LE(possible_bytes(kind, content, largest), content.size());
+    EXPECT_EQ(possible_bytes(kind, {}, largest), 0U);
+  });
 }
 
 TEST(ExtremeClock, Shifts) {

@@ -51,7 +51,7 @@ constexpr const char* for_nodes_only =
 verb make_verb() {
   const auto options = std::make_shared<ros2_options>();
   options->common.frame = frame::robot;
-  options->common.on_loss = loss_rule::wait;
+  options->common.on_loss.usual = loss_rule::wait;
   return {.name = "g4-ros2",
           .summary = "Publish lidars as ROS 2 topics",
           .arguments = {named_source_arguments(

@@ -251,12 +251,9 @@ stream_survey lidar_link::survey(std::int64_t time_ns) {
 
 stream_survey steady_survey(lidar_link& link, std::int64_t time_ns) {
   constexpr int most = 3;
-  constexpr std::int64_t short_ns = 5'000 * ms;
-  constexpr std::int64_t least_gaps = 20;  // of the longest length, that fit into the time
   for (int i = 1;; ++i) {
     stream_survey made = link.survey(time_ns);
-    const bool is_steady = made.longest_gap_ns * least_gaps < time_ns;
-    if (is_steady || i == most || time_ns > short_ns || link.is_over()) return made;
+    if (made.is_steady() || i == most || time_ns > short_survey_ns || link.is_over()) return made;
   }
 }
 

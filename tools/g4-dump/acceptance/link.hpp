@@ -9,6 +9,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -27,6 +28,10 @@ namespace g4_tool::acceptance {
 inline constexpr std::int64_t spun_up_ns = 3'000 * ms;
 /// After this time without a scan it stands.
 inline constexpr std::int64_t run_down_ns = 3'000 * ms;
+/// A survey of at most this length gives no rates if it is not steady.
+inline constexpr std::int64_t short_survey_ns = 5'000 * ms;
+inline constexpr std::string_view not_steady =
+    "The packets came irregularly: this computer was too busy to measure the rates.";
 
 [[nodiscard]] constexpr double in_ms(std::int64_t ns) noexcept {
   return static_cast<double>(ns) / 1e6;
@@ -132,7 +137,7 @@ class lidar_link {
 bool pulse_dtr(lidar_link& link, std::int64_t low_ns = 120 * ms);
 /// Waits until four revolutions and a second have the same speed within 3 %, at most 12 s.
 [[nodiscard]] steady_motor wait_until_steady(lidar_link& link);
-/// A survey for its rates: a short one in which the stream pauses, as where the host is busy, is repeated.
+/// A survey for its rates: a short one that is not steady is repeated, twice.
 [[nodiscard]] stream_survey steady_survey(lidar_link& link, std::int64_t time_ns);
 
 }  // namespace g4_tool::acceptance

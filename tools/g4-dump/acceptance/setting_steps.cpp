@@ -77,7 +77,11 @@ void sample_rate(subject& of, step_result& into) {
     static_cast<void>(of.link->survey(measured_ns));  // while the motor spins up
     const stream_survey heard = steady_survey(*of.link, measured_ns);
     of.link->stop();
-    into.add(fmt::format("code_{}_hz", *code), heard.sample_rate_hz());
+    if (heard.is_steady() || heard.counts.packets == 0) {
+      into.add(fmt::format("code_{}_hz", *code), heard.sample_rate_hz());
+    } else {
+      into.find(finding::observed, not_steady);
+    }
     into.add(fmt::format("code_{}_samples", *code), heard.most_samples);
     most_samples = std::max(most_samples, heard.most_samples);
   }

@@ -77,12 +77,18 @@ void stream(subject& of, step_result& into) {
   into.add("skipped_bytes", link.counts().skipped_bytes() - skipped_before);
   if (link.sample_bytes() != 0) into.add("sample_bytes", link.sample_bytes());
   if (packets == 0) return;
-  into.add("damaged_percent", 100.0 * static_cast<double>(heard.bad_checksums) /
-                                  static_cast<double>(packets + heard.bad_checksums));
+  const bool has_rates =
+      heard.is_steady() || of.options.stream_time > std::chrono::nanoseconds(short_survey_ns);
   into.add("revolutions", heard.zero_packets);
   into.add("most_samples", heard.most_samples);
-  into.add("sample_rate_hz", heard.sample_rate_hz());
-  into.add("frequency_hz", heard.frequency_hz());
+  if (has_rates) {
+    into.add("damaged_percent", 100.0 * static_cast<double>(heard.bad_checksums) /
+                                    static_cast<double>(packets + heard.bad_checksums));
+    into.add("sample_rate_hz", heard.sample_rate_hz());
+    into.add("frequency_hz", heard.frequency_hz());
+  } else {
+    into.find(observed, not_steady);
+  }
   const auto add_range = [&](std::string name, std::optional<std::size_t> at) {
     const auto range_mm = at ? heard.directions.range_mm(*at) : std::nullopt;
     if (range_mm) into.add(std::move(name), *range_mm);
@@ -91,7 +97,7 @@ void stream(subject& of, step_result& into) {
   add_range("longest_mm", heard.directions.farthest());
   const bool reports = heard.reported_hz() > 0.0;
   if (heard.zero_packets > 2) into.add("reports_frequency", reports);
-  if (reports) into.add("offset_hz", heard.frequency_hz() - heard.reported_hz());
+  if (reports && has_rates) into.add("offset_hz", heard.frequency_hz() - heard.reported_hz());
   if (!reports) into.find(observed, "Zero packets do not report the frequency.");
 }
 

@@ -2,6 +2,7 @@
 #include "survey.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <limits>
 #include <variant>
@@ -84,17 +85,11 @@ void stream_survey::take(const event& found, std::int64_t arrival_ns) {
 }
 
 void stream_survey::take(packet_view packet, std::int64_t arrival_ns) {
-  if (counts.packets > 0) {
-    longest_gap_ns = std::max(longest_gap_ns, way_ns(last_packet_ns_, arrival_ns));
-  }
-  last_packet_ns_ = arrival_ns;
   directions.take(packet);
   if (const auto fits = revolution_.add(packet)) ++(*fits ? crc_fits : crc_misfits);
   static_cast<void>(reader_.add(packet));
   if (packet.is_zero()) {
-    if (zero_packets == 0) first_zero_ns_ = arrival_ns;
-    last_zero_ns_ = arrival_ns;
-    samples_at_zero_ = samples_;
+    zeros_.push_back({arrival_ns, samples_});
     reported_dhz_ += static_cast<std::uint64_t>(packet.reported_frequency_dhz());
     ++zero_packets;
   }
@@ -129,8 +124,24 @@ void stream_survey::compare_intensities(packet_view packet) {
 }
 
 double stream_survey::per_second(std::uint64_t count) const noexcept {
-  const double seconds = static_cast<double>(way_ns(first_zero_ns_, last_zero_ns_)) / 1e9;
+  if (zeros_.empty()) return 0.0;
+  const double seconds =
+      static_cast<double>(way_ns(zeros_.front().time_ns, zeros_.back().time_ns)) / 1e9;
   return seconds > 0.0 ? static_cast<double>(count) / seconds : 0.0;
+}
+
+bool stream_survey::is_steady() const {
+  constexpr std::size_t fewest = 3;
+  constexpr double part = 0.02;
+  if (zeros_.size() < fewest) return false;
+  const arrival& first = zeros_.front();
+  const auto all_ns = static_cast<double>(way_ns(first.time_ns, zeros_.back().time_ns));
+  const auto samples = static_cast<double>(zeros_.back().samples);
+  return std::ranges::all_of(zeros_, [&](const arrival& each) {
+    const double due_ns = all_ns * static_cast<double>(each.samples) / samples;
+    return std::abs(static_cast<double>(way_ns(first.time_ns, each.time_ns)) - due_ns) <
+           part * all_ns;
+  });
 }
 
 double stream_survey::reported_hz() const noexcept {

@@ -48,19 +48,24 @@ class stream_survey {
 
   /// Measured from the first zero packet to the last; 0 with fewer than two.
   [[nodiscard]] double frequency_hz() const noexcept { return per_second(zero_packets - 1); }
-  [[nodiscard]] double sample_rate_hz() const noexcept { return per_second(samples_at_zero_); }
+  [[nodiscard]] double sample_rate_hz() const noexcept {
+    return zeros_.empty() ? 0.0 : per_second(zeros_.back().samples);
+  }
   /// The mean of what zero packets report, as they report it; 0: nothing.
   [[nodiscard]] double reported_hz() const noexcept;
   [[nodiscard]] const std::optional<g4lidar::ct_information>& information() const noexcept {
     return reader_.last();
   }
 
+  /// Whether the packets came as they were measured, within 2 % of the time: not where the host was busy, and read
+  /// late what had waited, or has lost some of it. Else rates and losses are not those of the lidar.
+  [[nodiscard]] bool is_steady() const;
+
   direction_survey directions;
   stream_counter counts;
   std::uint64_t zero_packets = 0;
   std::uint64_t bad_checksums = 0;
   std::size_t most_samples = 0;
-  std::int64_t longest_gap_ns = 0;  ///< The longest time between two packets.
   /// How many samples of a zone have each value of the two lower bits.
   std::array<std::array<std::uint64_t, 4>, zones> bits{};
   /// Neighbours with a return whose two lower bits differ by 1 and whose byte of intensity shows what these
@@ -77,12 +82,14 @@ class stream_survey {
   void compare_intensities(packet_view packet);
 
   sample_layout layout_;
-  std::int64_t first_zero_ns_ = 0;
-  std::int64_t last_zero_ns_ = 0;
-  std::int64_t last_packet_ns_ = 0;
-  std::uint64_t samples_ = 0;          // since the first zero packet
-  std::uint64_t samples_at_zero_ = 0;  // before the last one
-  std::uint64_t reported_dhz_ = 0;     // the sum
+  /// A zero packet: when it came, and the samples since the first one.
+  struct arrival {
+    std::int64_t time_ns;
+    std::uint64_t samples;
+  };
+  std::vector<arrival> zeros_;
+  std::uint64_t samples_ = 0;       // since the first zero packet
+  std::uint64_t reported_dhz_ = 0;  // the sum
   ct_revolution revolution_;
   ct_information_reader reader_;
 };

@@ -148,6 +148,7 @@ int examine(const doctor_options& options) {
   if (options.source == "-") {
     throw bad_value("doctor examines a device or a file, not standard input");
   }
+  refuse_options_of_others(options);
   diagnostic_options how;
   how.baud = options.expected.baud;
   how.probe_all_ports = options.expected.all_ports;

@@ -75,6 +75,7 @@ device_facts facts_of_device(const common_options& options) {
 
 device_facts facts_of(const common_options& options) {
   if (kind_of_source(options.source) != source_kind::recording) return facts_of_device(options);
+  refuse_zero_angle(options, "info prints what was recorded");
   device_facts facts = facts_of_recording(options.source);
   if (const auto* const stated = model_of(options)) facts.candidates = {stated};
   return facts;

@@ -181,6 +181,8 @@ int run(packets_options options) {
   options.style.lines = options.common->count;
   const g4lidar::model* const which = model_of(*options.common);
   options.is_model_known = which != nullptr;
+  if (kind == source_kind::raw_bytes || kind == source_kind::recording)
+    refuse_zero_angle(*options.common, "packets prints the angles that were sent");
   if (which != nullptr) options.style = style_for(options.style, *which);
   options.style.has_times = kind != source_kind::raw_bytes;
   const auto list = kind == source_kind::raw_bytes   ? list_bytes

@@ -272,7 +272,7 @@ one revolution is printed as text, of the size that --size names, to any output.
 verb make_view_verb() {
   const auto job = std::make_shared<view_job>();
   common_options& common = *job->common;
-  common.on_loss = loss_rule::reconnect;
+  common.on_loss.usual = loss_rule::reconnect;
   view_settings& settings = job->settings;
   option_row zoom =
       value_row("--zoom", "METERS", "From the middle to the edge (as far as the returns)",

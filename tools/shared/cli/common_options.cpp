@@ -305,13 +305,14 @@ option_rows device_rows(common_options& options) {
   const choices<loss_rule> rules{
       {"exit", loss_rule::exit}, {"wait", loss_rule::wait}, {"reconnect", loss_rule::reconnect}};
   const auto usual =
-      std::ranges::find(rules, options.on_loss, &choices<loss_rule>::value_type::second);
+      std::ranges::find(rules, options.on_loss.usual, &choices<loss_rule>::value_type::second);
   const std::string help = "If the device is lost; wait: also at the start (" + usual->first + ")";
-  return joined(in_group("Device", {choice_row("--on-loss", help.c_str(), options.on_loss, rules)}),
-                baud_row(options), in_group("Device", {model_row(options), zero_row(options)}),
-                in_group("Device", {flag_row("--listen", "Only listen: not a byte is sent",
-                                             options.expected.listens)}),
-                all_ports_row(options));
+  return joined(
+      in_group("Device", {choice_row("--on-loss", help.c_str(), options.on_loss.given, rules)}),
+      baud_row(options), in_group("Device", {model_row(options), zero_row(options)}),
+      in_group("Device",
+               {flag_row("--listen", "Only listen: not a byte is sent", options.expected.listens)}),
+      all_ports_row(options));
 }
 
 option_row loop_row(bool& into) { return flag_row("--loop", "Start again at the end", into); }

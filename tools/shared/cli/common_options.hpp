@@ -53,6 +53,11 @@ enum class loss_rule : unsigned char {
   wait,       ///< Also waits for a device that is not connected at the start.
 };
 
+struct loss_choice {
+  loss_rule usual = loss_rule::exit;  ///< Of the command.
+  std::optional<loss_rule> given;     ///< Of --on-loss.
+};
+
 /// What is at the source.
 struct expected_device {
   std::uint32_t baud = 0;  ///< 0: the usual rate of the model, or searched.
@@ -82,7 +87,7 @@ struct common_options {
   g4lidar::frame frame = g4lidar::frame::vendor;
   length_unit unit = length_unit::millimetres;
   std::optional<time_style> time;  ///< Nothing: the default depends on the source.
-  loss_rule on_loss = loss_rule::exit;
+  loss_choice on_loss;
   bool json = false;
 };
 
@@ -141,7 +146,7 @@ void note_order(scan_order chosen);
 [[nodiscard]] option_row all_ports_row(common_options& options);
 /// --zero-angle.
 [[nodiscard]] option_row zero_row(common_options& options);
-/// --on-loss with the present value of `options` as default, --baud, --model, --zero-angle, --listen, --all-ports.
+/// --on-loss with options.on_loss.usual as default, --baud, --model, --zero-angle, --listen, --all-ports.
 [[nodiscard]] option_rows device_rows(common_options& options);
 
 }  // namespace g4_tool

@@ -16,7 +16,7 @@ namespace g4_tool {
 
 struct serve_options {
   serve_options() {
-    common.on_loss = loss_rule::wait;
+    common.on_loss.usual = loss_rule::wait;
     common.frame = frame::robot;  // as in the page
   }
 

@@ -9,6 +9,7 @@
 #include <variant>
 
 #include "exit_code.hpp"
+#include "g4lidar/core/session/model_requests.hpp"
 #include "g4lidar/lidar_parameters.hpp"
 #include "logger.hpp"
 #include "rows.hpp"
@@ -58,6 +59,10 @@ setting_change change_of(const std::string& word, const g4lidar::model* of) {
   const std::string wanted = word.substr(equals + 1);
   const auto value = value_in(which, wanted, of);
   if (value) return {&which, *value};
+  if (of != nullptr && !has_request(*of, which.change)) {
+    throw bad_value(
+        fmt::format("{}: {} {} has no such setting", which.name, article_of(*of), of->name));
+  }
   throw bad_value(std::string(value.error().subject()) + did_you_mean(wanted, value_words(which)));
 }
 

@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 
 #include <algorithm>
+#include <array>
 #include <string_view>
 #include <utility>
 #include <variant>
@@ -140,6 +141,19 @@ std::string alternatives_to(const g4lidar::model& found) {
   return words;
 }
 
+/// The options of the library that not every source can use, and the names by which the user gives them.
+constexpr std::array<std::pair<std::string_view, std::string_view>, 9> option_names{{
+    {"baud", "--baud"},
+    {"insist_on_model", "--model MODEL!"},
+    {"listen_only", "--listen"},
+    {"probe_all_ports", "--all-ports"},
+    {"reconnect", "--on-loss"},
+    {"speed", "--playback-speed"},
+    {"loop", "--loop"},
+    {"range", "--from, --to"},
+    {"raw_sample_rate_hz", "--sample-rate"},
+}};
+
 /// That of --model, or of the name; null: none is named.
 const g4lidar::model* named_model(const common_options& options) {
   const g4lidar::model* const named = value_of(model_in_source(options.source));
@@ -191,8 +205,37 @@ void report_contradictions(const recognition& found) {
 
 void report_model(const recognised_model& found) { report_model(*found.which, found.is_usual()); }
 
+// What all sources get is left out: the speed 1 of programs that show a recording.
+void refuse_options_of_others(const common_options& options, const lidar_options& how) {
+  constexpr double as_recorded = 1.0;
+  const expected_device& expected = options.expected;
+  lidar_options given{.device = options.source,
+                      .probe_all_ports = expected.all_ports,
+                      .insist_on_model = expected.insists,
+                      .listen_only = expected.listens,
+                      .baud = expected.baud,
+                      .reconnect = options.on_loss.given.has_value(),
+                      .playback = how.playback,
+                      .raw_sample_rate_hz = how.raw_sample_rate_hz};
+  if (given.playback.speed == as_recorded) given.playback.speed = lidar_options().playback.speed;
+  const auto wrong = problem_with_source(given);
+  if (!wrong) return;
+  std::string text = wrong->message();
+  for (const auto& [option, name] : option_names) {
+    const std::string words = fmt::format("configuring {},", option);
+    if (text.starts_with(words)) text.replace(0, words.size(), fmt::format("{},", name));
+  }
+  throw failure(exit_code::usage, text, name_of(wrong->code()));
+}
+
+void refuse_zero_angle(const common_options& options, std::string_view why) {
+  if (options.expected.zero)
+    throw bad_value(fmt::format("--zero-angle: {}; it is for g4-dump dump, scan and convert", why));
+}
+
 const g4lidar::model* model_of(const common_options& options,
                                std::optional<recognised_model>* shown) {
+  refuse_options_of_others(options);
   const source_kind kind = kind_of_source(options.source);
   const g4lidar::model* const named = named_model(options);
   if (kind == source_kind::raw_bytes) {
@@ -216,36 +259,19 @@ const g4lidar::model* model_of(const common_options& options,
   return found;
 }
 
-namespace {
-
-/// Throws a failure if the user has given an option that the source cannot use. What all sources get is left out: the
-/// speed 1 of programs that show a recording, and what happens at a loss.
-void refuse_options_of_others(const lidar_options& how) {
-  constexpr double as_recorded = 1.0;
-  lidar_options given;
-  given.device = how.device;
-  given.baud = how.baud;
-  given.listen_only = how.listen_only;
-  given.raw_sample_rate_hz = how.raw_sample_rate_hz;
-  given.playback = how.playback;
-  if (given.playback.speed == as_recorded) given.playback.speed = lidar_options().playback.speed;
-  if (const auto wrong = problem_with_source(given)) throw failure(*wrong);
-}
-
-}  // namespace
-
 lidar_options options_for(const common_options& options, lidar_options how) {
   how.device = options.source;
   how.model = named_model(options);
   if (options.expected.baud != 0) how.baud = options.expected.baud;
   how.listen_only = options.expected.listens;
-  refuse_options_of_others(how);
+  refuse_options_of_others(options, how);
   how.zero_angle = options.expected.zero;
   how.probe_all_ports = options.expected.all_ports;
   how.insist_on_model = options.expected.insists;
-  how.reconnect = options.on_loss != loss_rule::exit;
+  const loss_rule at_loss = options.on_loss.given.value_or(options.on_loss.usual);
+  how.reconnect = at_loss != loss_rule::exit;
   // A file that is missing is not waited for.
-  if (options.on_loss == loss_rule::wait && !is_file_name(options.source))
+  if (at_loss == loss_rule::wait && !is_file_name(options.source))
     how.device_wait = std::chrono::milliseconds::max();
   if (!how.is_cancelled) how.is_cancelled = [] { return interrupt() != 0; };
   how = usable_options(std::move(how));

@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string_view>
 
 #include "cli/common_options.hpp"
 #include "g4lidar/lidar.hpp"
@@ -27,13 +28,17 @@ using transport_tap = std::function<std::unique_ptr<transport>(std::unique_ptr<t
 [[nodiscard]] std::function<result<std::unique_ptr<connector>>(std::unique_ptr<connector>)>
 for_each_connection(transport_tap tap);
 
+/// Throws a failure if the user has given an option that the source cannot use. `how` has those of the verb.
+void refuse_options_of_others(const common_options& options, const lidar_options& how = {});
+/// Throws a bad_value if --zero-angle is given, which what is done with a file does not use, and why.
+void refuse_zero_angle(const common_options& options, std::string_view why);
 /// `how` with device, model, baud, reconnect and waiting of the options. Signals cancel. The model that raw
 /// bytes show is logged when they are opened.
 [[nodiscard]] lidar_options options_for(const common_options& options, lidar_options how);
 /// What sends the bytes of the source: that of --model or of the name, or what a file shows. Raw bytes that
 /// show it are reported by report_model(), or stored in `shown` and not reported. Null: not known before the first
 /// bytes of a pipe are read, which input::recognise() does, or before a device is opened, which searches it: then it is
-/// opened_source::model(). Throws a failure, and a bad_value if a recording is of another model than that of --model.
+/// opened_source::model(). Throws a failure, also for options that the source cannot use, and a bad_value if a recording is of another model than that of --model.
 [[nodiscard]] const g4lidar::model* model_of(const common_options& options,
                                              std::optional<recognised_model>* shown = nullptr);
 /// Logs what raw bytes were recognised as, in a line, unless it is a G4 for certain: which models also send
