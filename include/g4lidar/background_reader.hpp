@@ -9,10 +9,12 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "g4lidar/detail/api.hpp"
 #include "g4lidar/error.hpp"
 #include "g4lidar/lidar.hpp"
+#include "g4lidar/setting_table.hpp"
 
 namespace g4lidar {
 
@@ -40,8 +42,10 @@ struct reader_status {
   reader_state state = reader_state::opening;
   /// Why it is lost, could not be opened, or has ended.
   std::optional<error> why{};
-  /// Nothing before it was opened, and for raw bytes.
+  /// Nothing until the lidar has identified itself: raw bytes may never do so.
   std::optional<device_information> information{};
+  /// As which model it is read: facts_of() the recognition() of the lidar; empty before it was opened.
+  std::vector<model_fact> recognised{};
   std::string name{};                         ///< lidar::name(); empty before it was opened.
   std::optional<playback_status> playback{};  ///< Of a file that is played.
 };

@@ -73,6 +73,8 @@ class G4LIDAR_API lidar_parameters {
 
   /// The filters now.
   [[nodiscard]] const filter_settings& filters() const noexcept { return now_; }
+  /// A copy of them. *Any thread.*
+  [[nodiscard]] filter_settings current_filters() const;
   /// What cannot change, and what is known of the device. *Any thread.*
   void fix(std::string_view name, parameter_value value);
   /// Asks the device for its settings, before a scan.
@@ -92,10 +94,10 @@ class G4LIDAR_API lidar_parameters {
   [[nodiscard]] const model* known_model() const;
 
   shaping_options how_;
-  filter_settings now_;
   g4lidar::mask mask_;
   scan_shaper& shaper_;
-  mutable std::mutex mutex_;  // protects the next one
+  mutable std::mutex mutex_;  // protects the next two; the thread reads the first one without
+  filter_settings now_;
   std::map<std::string, parameter_value, std::less<>> values_;
 };
 

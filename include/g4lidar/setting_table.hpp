@@ -13,6 +13,7 @@
 #include "g4lidar/detail/api.hpp"
 #include "g4lidar/error.hpp"
 #include "g4lidar/lidar_options.hpp"
+#include "g4lidar/recognition.hpp"
 
 namespace g4lidar {
 
@@ -72,13 +73,16 @@ struct setting_info {
 /// What commands set, and how the speed is set without: "commands set nothing; its speed: ...". *Allocates.*
 [[nodiscard]] G4LIDAR_API std::string ways_to_set(const model& which);
 
-/// What the table of models states about one, as text: {"baud", "115200"}.
+/// What is known about a model, as text: {"baud", "115200"}.
 struct model_fact {
   std::string_view name;  ///< Valid forever.
   std::string text;
 };
 /// Number, rates, frequency, range, samples, the direction of 0, commands: the row of docs/models.md. *Allocates.*
 [[nodiscard]] G4LIDAR_API std::vector<model_fact> facts_of(const model& which);
+/// For status messages: model, candidates, known_by; number and baud where they are known; and contradictions where
+/// there are some. Empty where no model is known. *Allocates.*
+[[nodiscard]] G4LIDAR_API std::vector<model_fact> facts_of(const recognition& what);
 
 /// Sets the option of this setting; nothing for an answer that is of none.
 G4LIDAR_API void set_option(lidar_options& options, const answer& value) noexcept;

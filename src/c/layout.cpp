@@ -78,6 +78,7 @@ static_assert(offsetof(g4lidar_scan, turn_deg) == 2 * word + 62);
 static_assert(offsetof(g4lidar_scan, model) == 2 * word + 72);
 static_assert(offsetof(g4lidar_counts, largest_gap_ns) == 144);
 static_assert(offsetof(g4lidar_counts, extras) == 152);
+static_assert(offsetof(g4lidar_counts, extras.empty_packets) == 176);
 static_assert(first_size<g4lidar_grid_options> == word + 16);
 static_assert(offsetof(g4lidar_grid_options, near_is_minus_infinity) == word + 20);
 static_assert(offsetof(g4lidar_grid_options, longest_range_mm) == word + 28);

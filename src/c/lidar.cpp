@@ -166,7 +166,8 @@ void fill(g4lidar_counts& out, const lidar_counts& from) noexcept {
          .largest_gap_ns = from.largest_gap_ns,
          .extras = {.time_packets = from.stream.time_packets,
                     .crc_matches = from.stream.crc_matches,
-                    .crc_mismatches = from.stream.crc_mismatches}};
+                    .crc_mismatches = from.stream.crc_mismatches,
+                    .empty_packets = from.stream.empty_packets}};
 }
 
 }  // namespace g4lidar::c

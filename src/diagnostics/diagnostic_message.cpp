@@ -41,6 +41,24 @@ diagnostic_status status_of(const stage_report& stage, std::string_view hardware
   return made;
 }
 
+diagnostic_status status_of(const reader_status& now, std::string_view why) {
+  const bool is_bad = now.state == reader_state::opening || now.state == reader_state::lost ||
+                      (now.state == reader_state::ended && !why.empty());
+  diagnostic_status made{.level = is_bad ? diagnostic_level::error : diagnostic_level::ok,
+                         .name = std::string(program_name).append("state"),
+                         .message = std::string(name_of(now.state)),
+                         .values = {{"device", now.name}}};
+  if (now.information) made.hardware_id = now.information->serial_number();
+  if (is_bad && !why.empty()) made.message.append(": ").append(why);
+  for (const auto& [name, text] : now.recognised) {
+    made.values.emplace_back(name, text);
+    if (is_bad || name != "contradictions") continue;
+    made.level = diagnostic_level::warn;
+    made.message.append(". ").append(text);
+  }
+  return made;
+}
+
 diagnostic_status status_of(const lidar_counts& counts, std::string_view hardware_id) {
   diagnostic_status made{.name = std::string(program_name).append("counts"),
                          .message = "ok",

@@ -123,5 +123,10 @@ void running_diagnosis::add(const error& why) { state_->add(why); }
 std::vector<stage_report> running_diagnosis::stages(const point_filter& directions) const {
   return state_->stages(directions);
 }
+std::vector<stage_report> running_diagnosis::stages(const filter_settings& wanted) const {
+  point_filter directions = wanted.filter;
+  directions.ignored_sectors = wanted.ignored;
+  return stages(directions);
+}
 
 }  // namespace g4lidar

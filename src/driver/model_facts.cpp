@@ -78,4 +78,17 @@ std::vector<model_fact> facts_of(const model& which) {
           {"commands", commands_of(which)}};
 }
 
+std::vector<model_fact> facts_of(const recognition& what) {
+  std::vector<model_fact> all;
+  if (what.model == nullptr) return all;
+  all = {{"model", std::string(what.model->word)},
+         {"candidates", model_words(what.candidates)},
+         {"known_by", std::string(name_of(what.by))}};
+  if (what.number != 0) all.push_back({"number", std::to_string(what.number)});
+  if (what.baud != 0) all.push_back({"baud", std::to_string(what.baud)});
+  std::string contradictions = contradictions_of(what);
+  if (!contradictions.empty()) all.push_back({"contradictions", std::move(contradictions)});
+  return all;
+}
+
 }  // namespace g4lidar

@@ -4,6 +4,8 @@
 
 #include <mutex>
 #include <optional>
+#include <tuple>
+#include <vector>
 
 #include "event_queue.hpp"
 #include "g4lidar/background_reader.hpp"
@@ -45,8 +47,20 @@ class reader_view {
     const std::lock_guard lock(mutex_);
     what(status_, counts_);
   }
-  /// Only in the thread.
+  /// Only in the thread, as the next one.
   [[nodiscard]] const reader_status& own() const noexcept { return status_; }
+  /// As which model the lidar is read. Allocates where that has changed.
+  void show(const recognition& now) {
+    const auto facts_follow_from = [](const recognition& from) {
+      return std::tuple(from.model, from.by, from.number, from.baud, from.is_silent);
+    };
+    if (facts_follow_from(now) == facts_follow_from(shown_)) return;
+    shown_ = now;
+    shown_.candidates = {};
+    std::vector<model_fact> facts = facts_of(now);
+    const std::lock_guard lock(mutex_);
+    status_.recognised.swap(facts);
+  }
 
   // ---- any thread ----
   [[nodiscard]] reader_status status() const {
@@ -70,6 +84,7 @@ class reader_view {
   mutable std::mutex mutex_;
   reader_status status_;
   lidar_counts counts_;
+  recognition shown_{};  // of the thread, without its candidates
 };
 
 }  // namespace g4lidar

@@ -285,10 +285,7 @@ void background_reader::thread::follow_playback() {
 }
 
 void background_reader::thread::show_device() {
-  view.change([&](reader_status& now, lidar_counts&) {
-    now.name = device_->name();
-    if (device_->information().model != 0) now.information = device_->information();
-  });
+  view.change([&](reader_status& now, lidar_counts&) { now.name = device_->name(); });
   publish();
 }
 
@@ -304,7 +301,9 @@ void background_reader::thread::publish() {
   }
   const lidar_counts counts = device_->counts();
   if (counts.stream.points > 0) failing_since_.reset();
+  view.show(device_->recognition());
   view.change([&](reader_status& now, lidar_counts& all) {
+    if (device_->information().model != 0) now.information = device_->information();
     now.playback = where;
     all = counts;
   });

@@ -74,10 +74,12 @@ class G4LIDAR_HIDDEN background_reader::thread
   void set_state(reader_state state, const std::optional<error>& why = {});
   void follow_playback();
   void show_device();
+  /// The device, too, as far as it has become known.
   void publish();
   /// By lidar_options::is_cancelled, and not by a stop.
   [[nodiscard]] bool is_cancelled() const {
-    return !requests.has_to_stop() && options_.is_cancelled && options_.is_cancelled();
+    // A stop in between ends in false: it cancels, too.
+    return options_.is_cancelled && options_.is_cancelled() && !requests.has_to_stop();
   }
   [[nodiscard]] player* played() noexcept { return device_ ? device_->player() : nullptr; }
   [[nodiscard]] reader_state state() const noexcept { return view.own().state; }

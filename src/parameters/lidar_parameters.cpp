@@ -175,7 +175,7 @@ lidar_parameters::lidar_parameters(const shaping_options& how, filter_settings s
                                    g4lidar::mask mask,
                                    const std::map<std::string, std::string>& words,
                                    scan_shaper& shaper)
-    : how_(how), now_(std::move(start)), mask_(std::move(mask)), shaper_(shaper) {
+    : how_(how), mask_(std::move(mask)), shaper_(shaper), now_(std::move(start)) {
   shape();
   const point_filter& filter = now_.filter;
   fix("range_min", static_cast<double>(filter.least_range_mm) / 1e3);
@@ -190,6 +190,11 @@ void lidar_parameters::shape() {
   how_.filter.masks = mask_.polygons();
   how_.marks = now_.marks;
   shaper_.set_options(how_);
+}
+
+filter_settings lidar_parameters::current_filters() const {
+  const std::lock_guard lock(mutex_);
+  return now_;
 }
 
 void lidar_parameters::fix(std::string_view name, parameter_value value) {
@@ -279,8 +284,11 @@ std::string lidar_parameters::change(lidar* device, std::span<const named_value>
   }
   if (std::string reason = set_device(device, changes); !reason.empty()) return reason;
   if (values.empty()) return {};
-  now_ = std::move(next);
-  shape();
+  {
+    const std::lock_guard lock(mutex_);
+    now_ = std::move(next);
+    shape();
+  }
   for (const auto& [name, value] : values) fix(name, value);
   return {};
 }

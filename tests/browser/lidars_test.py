@@ -182,6 +182,26 @@ class ModelTest(PageTest):
         until(lambda: abs((page.read("status.frequency_hz") or 0) - 15) < 0.7, "15 Hz")
 
 
+class RecognitionTest(PageTest):
+    def numbers(self):
+        return self.driver.execute_script("""return Object.fromEntries(
+            [...document.querySelectorAll('#numbers dt')].map((name) => [name.textContent, name.nextSibling.textContent]));""")
+
+    def test_what_contradicts_is_shown(self):
+        page = self.open(self.serve("sim:?model=t-mini-plus&model_id=153")).runs()
+        self.assertIn("153, which no known model has", until(lambda: page.text("advice"), "what contradicts"))
+        self.assertIn("Model: Contradictions", page.text("stages"))
+        self.assertEqual(page.text("verdict"), "warn")
+        self.assertGreaterEqual(self.numbers().items(), {"Model": "t-mini-plus", "Number": "153"}.items())
+
+    def test_those_that_send_the_same_are_shown(self):
+        page = self.open(self.serve("front=sim:?model=x2", "rear=sim:", "--merge",
+                                    "--mount", "front=0.3,0.1,20", "--mount", "rear=-0.4,-0.2,-150")).runs()
+        until(lambda: "rear: Model" in self.numbers(), "the models of both")
+        self.assertGreaterEqual(self.numbers().items(), {"front: Model": "x2", "rear: Model": "g4"}.items())
+        self.assertEqual(page.text("advice"), "")
+
+
 class DamagedMessageTest(PageTest):
     def test_what_is_not_a_revolution_is_left_out(self):
         page = self.open(self.serve(standing("flat.txt"))).runs()

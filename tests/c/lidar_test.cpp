@@ -85,6 +85,19 @@ TEST(CLidar, CountsTimePacketsAndRevolutionsWithCrc) {
                             all->skipped_bad_checksum + all->skipped_truncated + all->held);
 }
 
+/// Before each zero packet an empty one, as of some X2.
+TEST(CLidar, CountsEmptyPackets) {
+  const simulator device = simulate("sim:?model=x2&empty_packets=true");
+  const lidar it = start_on(device);
+  const g4lidar_scan* scan = nullptr;
+  std::uint64_t turns = 0;
+  for (; turns < 20; ++turns)
+    ASSERT_EQ(g4lidar_next_scan(it.get(), 5000, &scan, nullptr), G4LIDAR_OK);
+  const g4lidar_counts* all = g4lidar_get_counts(it.get());
+  EXPECT_GE(all->extras.empty_packets, turns);
+  EXPECT_LE(all->extras.empty_packets, turns + 10);
+}
+
 TEST(CLidar, KnowsTheDevice) {
   const simulator device = simulate("sim:?serial=2021101000070999&firmware=3.7");
   const lidar it = open_on(device);

@@ -14,6 +14,7 @@ namespace g4lidar::test {
 namespace {
 
 using ::testing::Contains;
+using ::testing::ElementsAre;
 using ::testing::Pair;
 
 TEST(DiagnosticArray, IsReadByTheRulesOfCdr) {
@@ -70,6 +71,25 @@ TEST(DiagnosticStatus, OfAStageThatWasSkipped_HasTheReason) {
   stage.remark = "No scan is running.";
   EXPECT_EQ(status_of(stage, "").message, "No scan is running.");
   EXPECT_EQ(status_of(stage, "").level, diagnostic_level::ok);
+}
+
+TEST(DiagnosticStatus, OfAReader_IsAWarningWhereSomethingContradictsTheModel) {
+  reader_status now{
+      .state = reader_state::running, .recognised = {{"model", "x4"}}, .name = "/dev/x"};
+  EXPECT_EQ(status_of(now, "").level, diagnostic_level::ok);
+  EXPECT_EQ(status_of(now, "").message, "running");
+  EXPECT_THAT(status_of(now, "").values,
+              ElementsAre(Pair("device", "/dev/x"), Pair("model", "x4")));
+  now.recognised.push_back({"contradictions", "It is green."});
+  EXPECT_EQ(status_of(now, "").level, diagnostic_level::warn);
+  EXPECT_EQ(status_of(now, "").message, "running. It is green.");
+  for (const auto state : {reader_state::opening, reader_state::lost, reader_state::ended}) {
+    now.state = state;
+    EXPECT_EQ(status_of(now, "It is gone.").level, diagnostic_level::error);
+    EXPECT_EQ(status_of(now, "It is gone.").message, std::string(name_of(state)) + ": It is gone.");
+  }
+  now.recognised.clear();
+  EXPECT_EQ(status_of(now, "").level, diagnostic_level::ok) << "the end of a file";
 }
 
 TEST(DiagnosticStatus, OfCounts_HasAllOfThem) {

@@ -11,6 +11,7 @@
 #include <string_view>
 
 #include "cli/program.hpp"
+#include "diagnosis.hpp"
 #include "g4lidar/sim/pty_port.hpp"
 #include "g4lidar/sim/setup.hpp"
 #include "g4lidar/sim/world.hpp"
@@ -111,6 +112,19 @@ TEST(Diagnostics, StateListsTheModelsThatTheBytesFit) {
     return !found.empty();
   }));
   EXPECT_THAT(found, ::testing::StartsWith("x2, x2l, x3"));
+  tool.send(SIGINT);
+}
+
+TEST(Diagnostics, StateIsAWarningWhereSomethingContradictsTheModel) {
+  const test_domain domain;
+  diagnosis values(domain);
+  cli::program tool({"sim:?model=t-mini-plus&model_id=153"});
+  EXPECT_TRUE(comes_true([&] { return !values["contradictions"].empty(); }));
+  EXPECT_THAT(values["contradictions"], HasSubstr("153, which no known model has"));
+  EXPECT_EQ(values["model"], "t-mini-plus");
+  EXPECT_EQ(values["number"], "153");
+  EXPECT_EQ(values["g4lidar: state level"], "1");
+  EXPECT_THAT(values["g4lidar: state warning"], HasSubstr("153, which no known model has"));
   tool.send(SIGINT);
 }
 

@@ -119,6 +119,7 @@ TEST_F(UserConfiguration, ItsInterfacesAreTheOnlyOnes) {
                                  "file://" + path("other.xml") + "," + path("some.xml")}) {
     EXPECT_THAT(before(uri), Not(AnyOf(HasSubstr("Interface"), HasSubstr("239.")))) << uri;
     EXPECT_THAT(before(uri), HasSubstr("<AllowMulticast>false")) << uri;
+    EXPECT_THAT(configured({{"CYCLONEDDS_URI", uri}}, "eth7"), Not(HasSubstr("eth7"))) << uri;
   }
   for (const std::string& uri : {std::string("<CycloneDDS><Domain><Interf"), other,
                                  path("other.xml"), path("missing.xml")}) {

@@ -185,13 +185,18 @@ TEST(PageTexts, SayWhatIsKnownAndNullElse) {
                            {"most", 12.0},
                            {"step", 0.1}}));
   EXPECT_EQ(rows[4]["values"], (json{"off", "on"}));
-  page_status status{.state = g4lidar::reader_state::lost, .why = "gone", .loss = 0.25};
+  page_status status{.state = g4lidar::reader_state::lost,
+                     .why = "gone",
+                     .recognised = {{"model", "x4"}, {"contradictions", "It is green."}},
+                     .loss = 0.25};
   status.stages.push_back({.stage = g4lidar::diagnostic_stage::loss});
   status.stages.back().find(g4lidar::diagnosis::bits_flipped);
   status.stages.back().add("lost_percent", 3.5);
   status.counts.stream.crc_mismatches = 7;
   const json text = json::parse(status_text(status));
   EXPECT_EQ(text["state"], "lost");
+  EXPECT_EQ(text["recognition"], (json{{"model", "x4"}, {"contradictions", "It is green."}}));
+  EXPECT_TRUE(json::parse(status_text({}))["recognition"].is_null());
   EXPECT_EQ(text["counts"]["crc_mismatches"], 7);
   EXPECT_EQ(text["loss"], 0.25);
   EXPECT_TRUE(text["scan_rate_hz"].is_null());

@@ -51,6 +51,16 @@ TEST_F(Server, PageAndStatus) {
   EXPECT_EQ(end(SIGINT).code, 130);
 }
 
+TEST_F(Server, StatusHasTheModelAndWhatContradicts) {
+  begin({}, "sim:?model=t-mini-plus&model_id=153");
+  ASSERT_TRUE(gets_scans(*open_page()));
+  const std::string text = raw_client(port_).get("/status.json");
+  const json known = json::parse(text.substr(text.find("\r\n\r\n") + 4))["recognition"];
+  EXPECT_EQ(known["model"], "t-mini-plus");
+  EXPECT_EQ(known["number"], "153");
+  EXPECT_THAT(known["contradictions"].get<std::string>(), HasSubstr("153, which no known model"));
+}
+
 TEST_F(Server, PageProtocol_FromHelloToASetting) {
   begin({"--allow-set"}, "sim:?serial=1111222233334444");
   const auto client = open_page();

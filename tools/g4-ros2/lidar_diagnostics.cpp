@@ -1,24 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "lidar_diagnostics.hpp"
 
-#include "cli/exit_code.hpp"
-
 namespace g4_tool {
 namespace {
 
 constexpr std::chrono::seconds diagnostics_interval{1};
 /// The prefix of all statuses, which is replaced before they are published.
 constexpr std::string_view program_name = "g4lidar: ";
-
-diagnostic_status status_of_state(const reader_status& now, const std::string& why) {
-  const bool is_bad = now.state == reader_state::opening || now.state == reader_state::lost;
-  diagnostic_status made{.level = is_bad ? diagnostic_level::error : diagnostic_level::ok,
-                         .name = "g4lidar: state",
-                         .message = std::string(name_of(now.state)),
-                         .values = {{"device", now.name}}};
-  if (is_bad && !why.empty()) made.message += ": " + why;
-  return made;
-}
 
 }  // namespace
 
@@ -54,32 +42,15 @@ lidar_diagnostics::lidar_diagnostics(dds::bus& on, const ros2_options& options,
   if (!name.empty()) prefix_.append(name).append(" ");
 }
 
-void lidar_diagnostics::name_models(const recognition& found) {
-  const std::lock_guard lock(mutex_);
-  models_ = g4lidar::model_words(found.candidates);
-  known_by_ = name_of(found.by);
-  contradictions_ = contradictions_of(found);
-}
-
 void lidar_diagnostics::update(const source_reader& device, const scan_messages& messages,
                                std::int64_t stamp_ns) {
   const auto now = clock::now();
   if (!topic_ || now < due_ || stamp_ns == 0) return;
   due_ = now + diagnostics_interval;
   if (!topic_->is_wanted()) return;
-  const reader_status state = device.reader().status();
-  const std::string serial(state.information ? state.information->serial_number() : "");
-  auto statuses = statuses_of(device.stages(), device.reader().counts(), serial);
-  diagnostic_status first = status_of_state(state, device.why());
-  {
-    const std::lock_guard lock(mutex_);
-    if (!models_.empty()) {
-      first.values.emplace_back("candidates", models_);
-      first.values.emplace_back("known_by", known_by_);
-    }
-    if (!contradictions_.empty()) first.values.emplace_back("contradictions", contradictions_);
-  }
-  statuses.insert(statuses.begin(), std::move(first));
+  auto statuses = statuses_of(device.stages(), device.reader().counts(), "");
+  statuses.insert(statuses.begin(), status_of(device.reader().status(), device.why()));
+  const std::string serial = statuses.front().hardware_id;
   statuses.push_back(topics_.status(messages.counts()));
   for (const auto& each : more_) statuses.push_back(each());
   for (diagnostic_status& each : statuses) {

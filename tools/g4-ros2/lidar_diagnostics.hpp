@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <mutex>
 #include <span>
 #include <string>
 #include <string_view>
@@ -35,7 +34,7 @@ class topic_report {
   totals before_;
 };
 
-/// *Single thread*, that of the bus, except where stated.
+/// *Single thread*, that of the bus.
 class lidar_diagnostics {
  public:
   /// `name`: of the lidar; empty for the only one.
@@ -44,8 +43,6 @@ class lidar_diagnostics {
 
   /// Adds a status to each message. Its name begins with "g4lidar: ", which is replaced by the name of the node.
   void also_report(std::function<diagnostic_status()> what) { more_.push_back(std::move(what)); }
-  /// The model of the lidar that was opened, first, and the others that send the same bytes. *Any thread.*
-  void name_models(const recognition& found);
   /// Publishes once a second, if there are subscribers. `stamp_ns`: the time since 1970; 0: unknown, nothing is
   /// published.
   void update(const source_reader& device, const scan_messages& messages, std::int64_t stamp_ns);
@@ -58,10 +55,6 @@ class lidar_diagnostics {
   topic_report topics_;
   std::vector<std::function<diagnostic_status()>> more_;
   clock::time_point due_{};
-  std::mutex mutex_;    // protects the next one
-  std::string models_;  // their words; empty: not known yet
-  std::string known_by_;
-  std::string contradictions_;
 };
 
 }  // namespace g4_tool

@@ -92,7 +92,6 @@ void lidar_node::update() {
 }
 
 void lidar_node::on_open(g4lidar::lidar& device) {
-  diagnostics_.name_models(device.recognition());
   if (is_played_) {
     feed_.follow(*device.player());
     now_ns_ = stamp_ns(device.player()->begin_ns());

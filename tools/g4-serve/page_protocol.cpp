@@ -27,6 +27,12 @@ std::string in_page_words(std::string_view text) {
 
 json or_null(const std::optional<double>& value) { return value ? json(*value) : json(nullptr); }
 
+json json_of(const std::vector<model_fact>& recognised) {
+  json made;
+  for (const auto& [name, text] : recognised) made[std::string(name)] = text;
+  return made;
+}
+
 json json_of(const page_recording& recording) {
   const auto name_or_null = [](const std::string& name) {
     return name.empty() ? json(nullptr) : json(name);
@@ -135,6 +141,7 @@ void add_lidar(json& status, const page_status& lidar) {
   status["lidars"].push_back({{"name", lidar.lidar},
                               {"state", name_of(lidar.state)},
                               {"why", lidar.why},
+                              {"recognition", json_of(lidar.recognised)},
                               {"scan_rate_hz", or_null(lidar.scan_rate_hz)},
                               {"sample_rate_hz", or_null(lidar.sample_rate_hz)},
                               {"frequency_hz", or_null(lidar.frequency_hz)},
@@ -244,6 +251,7 @@ std::string status_text(const page_status& status) {
       {"op", "status"},
       {"state", name_of(status.state)},
       {"why", status.why},
+      {"recognition", json_of(status.recognised)},
       {"scan_rate_hz", or_null(status.scan_rate_hz)},
       {"sample_rate_hz", or_null(status.sample_rate_hz)},
       {"frequency_hz", or_null(status.frequency_hz)},

@@ -87,6 +87,7 @@ struct page_status {
   std::string lidar{};  ///< The name of one of several; else empty.
   reader_state state = reader_state::opening;
   std::string why{};
+  std::vector<model_fact> recognised{};    ///< See reader_status::recognised.
   std::optional<double> scan_rate_hz{};    ///< Received scans per second.
   std::optional<double> sample_rate_hz{};  ///< Of the last scan.
   std::optional<double> frequency_hz{};    ///< Of the last scan.

@@ -114,6 +114,7 @@ page_status served_lidar::status() {
   page_status made{.lidar = name_,
                    .state = now.state,
                    .why = source_->why(),
+                   .recognised = now.recognised,
                    .counts = reader().counts(),
                    .stages = source_->stages(),
                    .playback = now.playback,

@@ -259,11 +259,12 @@ G4LIDAR_C_API int g4lidar_next_event(g4lidar_lidar* lidar, g4lidar_event* event)
 /** "lost", "reconnected": the name of a g4lidar_event_kind. Valid forever; never NULL. Any thread. */
 G4LIDAR_C_API const char* g4lidar_event_name(int kind);
 
-/** Counts of what newer devices of the family send in addition; all are 0 for others. */
+/** Counts of what some devices of the family send in addition; all are 0 for others. */
 typedef struct g4lidar_extra_counts {
   uint64_t time_packets;   /**< Packets with the clock of the device. */
   uint64_t crc_matches;    /**< Revolutions that are complete by the CRC byte of the device. */
   uint64_t crc_mismatches; /**< Revolutions that lost a packet, by that byte. */
+  uint64_t empty_packets;  /**< Valid packets without samples, which `packets` does not count. */
 } g4lidar_extra_counts;
 
 /** Counts since g4lidar_open(), over all reconnects. bytes = parsed_bytes + the four skipped + held. */
@@ -287,7 +288,7 @@ typedef struct g4lidar_counts {
   uint64_t command_retries;      /**< Commands that had to be sent again. */
   uint64_t reconnects;           /**< How often the device was reconnected. */
   int64_t largest_gap_ns;        /**< Between two packets of one scan. */
-  g4lidar_extra_counts extras;   /**< Of what newer devices send in addition. */
+  g4lidar_extra_counts extras;   /**< Of what some devices send in addition. */
 } g4lidar_counts;
 
 /** All counts as they are now. Valid until the next call of this function; it does not end other

@@ -11,6 +11,7 @@
 #include "g4lidar/diagnostics/diagnosis.hpp"
 #include "g4lidar/error.hpp"
 #include "g4lidar/filter.hpp"
+#include "g4lidar/filter_text.hpp"
 #include "g4lidar/lidar.hpp"
 #include "g4lidar/settings.hpp"
 #include "g4lidar/transport/connector.hpp"
@@ -60,6 +61,8 @@ class G4LIDAR_API running_diagnosis {
   /// holder, baud_rate, answers and identity if they have a diagnosis. `skipped` where nothing is known,
   /// with the reason as remark. `directions`: as diagnostic_options::directions. *Any thread.* Allocates.
   [[nodiscard]] std::vector<stage_report> stages(const point_filter& directions = {}) const;
+  /// The same with those of filters, and what they ignore.
+  [[nodiscard]] std::vector<stage_report> stages(const filter_settings& wanted) const;
 
  private:
   class state;

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "lidar_session.hpp"
 
-#include <algorithm>
 #include <cstdlib>
 #include <exception>
 #include <future>
 #include <stdexcept>
-#include <string_view>
 #include <utility>
 #include <variant>
 
@@ -38,13 +36,6 @@ g4lidar::mask mask_in(const std::string& path) {
   return std::get<g4lidar::mask>(std::move(made));
 }
 
-/// Everything is kept until a parameter is set.
-g4lidar::filter_settings first_filters() {
-  g4lidar::filter_settings made;
-  made.filter.in = g4lidar::frame::robot;
-  return made;
-}
-
 }  // namespace
 
 lidar_session::lidar_session(rclcpp_lifecycle::LifecycleNode& node, lidar_topics& topics,
@@ -54,7 +45,8 @@ lidar_session::lidar_session(rclcpp_lifecycle::LifecycleNode& node, lidar_topics
       options_(options),
       is_file_(is_file_name(options.lidar.device)),
       motion_(node, topics, options.motion, options.frame_id, options.lidar.device),
-      parameters_(options.shaping, first_filters(), mask_in(options.mask), {}, shaper_),
+      parameters_(options.shaping, {.filter = {.in = g4lidar::frame::robot}}, mask_in(options.mask),
+                  {}, shaper_),
       reader_(
           [this] {
             g4lidar::lidar_options made = g4lidar::usable_options(options_.lidar);
@@ -157,17 +149,6 @@ void lidar_session::filter(std::vector<g4lidar::named_value> filters) {
   reader_.ask([this, what = std::move(filters)](g4lidar::lidar* /*lidar*/) {
     guard([&] { static_cast<void>(parameters_.change(nullptr, what)); });
   });
-}
-
-std::vector<g4lidar::stage_report> lidar_session::stages() const {
-  g4lidar::filter_settings wanted = first_filters();
-  for (const std::string_view name : {"fov", "ignore"}) {
-    const auto known = parameters_.value(*g4lidar::find_parameter(name));
-    if (const auto* const text = std::get_if<std::string>(&known))
-      static_cast<void>(g4lidar::set_filter(wanted, name, *text));
-  }
-  wanted.filter.ignored_sectors = wanted.ignored;
-  return diagnosis_.stages(wanted.filter);
 }
 
 void lidar_session::restart_file() {
@@ -278,7 +259,6 @@ void lidar_session::on_state(reader_state state, const std::optional<g4lidar::er
     const std::string text =
         std::string(name_of(state)) + (why && !is_end ? ": " + why->message() : "");
     const rclcpp::Logger logger = node_.get_logger();
-    if (why && *why == g4lidar::problem::cancelled) return;  // by the end of the program
     if (state == reader_state::ended && !is_end)
       RCLCPP_ERROR(logger, "%s", text.c_str());
     else if (why && !is_end)

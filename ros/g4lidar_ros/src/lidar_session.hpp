@@ -73,7 +73,9 @@ class lidar_session final : private g4lidar::reader_listener {
     return topics_.scans.is_wanted() || topics_.clouds.is_wanted();
   }
   /// The judgement of the lidar; of the directions that fov and ignore leave out nothing is expected.
-  [[nodiscard]] std::vector<g4lidar::stage_report> stages() const;
+  [[nodiscard]] std::vector<g4lidar::stage_report> stages() const {
+    return diagnosis_.stages(parameters_.current_filters());
+  }
   [[nodiscard]] g4lidar::lidar_counts counts() const { return reader_.counts(); }
   /// How many points were not deskewed, because their motion is not known.
   [[nodiscard]] std::uint64_t points_not_deskewed() const noexcept { return not_deskewed_; }

@@ -49,12 +49,8 @@ void node_diagnostics::report_state(wrapper& status) {
   const g4lidar::reader_status now = session_->status();
   if (now.information && now.information->is_known())
     updater_.setHardwareID(std::string(now.information->serial_number()));
-  const bool is_bad = now.state == g4lidar::reader_state::opening ||
-                      now.state == g4lidar::reader_state::lost || session_->failure();
-  std::string text(name_of(now.state));
-  if (is_bad && now.why) text += ": " + now.why->message();
-  status.summary(is_bad ? wrapper::ERROR : wrapper::OK, text);
-  status.add("device", now.name);
+  const bool is_end = now.state == g4lidar::reader_state::ended && !session_->failure();
+  fill(status, status_of(now, now.why && !is_end ? now.why->message() : ""));
   for (const g4lidar::parameter& each : g4lidar::all_parameters()) {
     const g4lidar::parameter_value known = session_->known().value(each);
     if (has_state(each) && known.index() != 0)

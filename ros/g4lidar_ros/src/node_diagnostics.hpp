@@ -12,7 +12,7 @@
 
 namespace g4lidar_ros {
 
-/// "state" with the settings, the stages of a running_diagnosis, "counts" and "topics", once a second. *Single thread*: that of the node.
+/// "state" with the model and the settings, the stages of a running_diagnosis, "counts" and "topics", once a second. *Single thread*: that of the node.
 class node_diagnostics {
  public:
   explicit node_diagnostics(rclcpp_lifecycle::LifecycleNode& node);

@@ -16,6 +16,7 @@
 #include "g4lidar/filter_text.hpp"
 #include "g4lidar/lidar_parameters.hpp"
 #include "g4lidar/setting_table.hpp"
+#include "g4lidar/source.hpp"
 #include "parameter_declarations.hpp"
 
 namespace g4lidar_ros {
@@ -126,13 +127,19 @@ session_options node_parameters::for_session() const {
   session_options made;
   g4lidar::lidar_options& lidar = made.lidar;
   lidar.device = node_.get_parameter("source").as_string();
-  if (const std::string word = node_.get_parameter("model").as_string(); !word.empty()) {
+  if (std::string word = node_.get_parameter("model").as_string(); !word.empty()) {
+    lidar.insist_on_model = word.ends_with('!');
+    if (lidar.insist_on_model) word.pop_back();
     lidar.model = g4lidar::model_named(word);
     if (lidar.model == nullptr)
       throw std::invalid_argument("model: " + g4lidar::why_no_model(word));
   }
+  lidar.insist_on_model |= node_.get_parameter("insist_on_model").as_bool();
+  lidar.listen_only = node_.get_parameter("listen_only").as_bool();
   if (const auto baud = node_.get_parameter("baud").as_int(); baud > 0)
     lidar.baud = static_cast<std::uint32_t>(baud);
+  if (const auto wrong = g4lidar::problem_with_source(lidar))
+    throw std::invalid_argument(wrong->message());
   lidar.reconnect = true;
   lidar.device_wait = connect_timeout();
   lidar.playback.speed = node_.get_parameter("playback_speed").as_double();

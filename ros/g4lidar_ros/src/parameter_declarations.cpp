@@ -120,7 +120,12 @@ void declare_parameters(rclcpp_lifecycle::LifecycleNode& node) {
           fixed("The lidar or the recording; empty: the only lidar",
                 "/dev/ttyUSB0, serial:NUMBER, usb:PATH, tcp:HOST:PORT, a file, or sim:"));
   declare(node, "model", value(""),
-          fixed("Model; empty: the lidar is searched, or as recorded", g4lidar::model_words()));
+          fixed("Model; empty: the lidar is searched, or as recorded",
+                g4lidar::model_words() + "; x4! as with insist_on_model"));
+  declare(node, "insist_on_model", value(false),
+          fixed("The model is right, whatever number the lidar reports"));
+  declare(node, "listen_only", value(false),
+          fixed("Send not a byte: for a data wire alone, or a lidar that another computer drives"));
   declare(node, "baud", value(0),
           counted(fixed("Bits per second; 0: those of the model"), 10'000'000));
   declare(node, "frame_id", value("laser"), fixed("Frame of the scans"));
@@ -159,7 +164,9 @@ void declare_parameters(rclcpp_lifecycle::LifecycleNode& node) {
                   -360.0, 360.0));
   declare(node, "mask", value(""),
           fixed("File of polygons, parts of the robot: returns inside are left out"));
-  const g4lidar::model* const model = g4lidar::model_named(node.get_parameter("model").as_string());
+  std::string word = node.get_parameter("model").as_string();
+  if (word.ends_with('!')) word.pop_back();
+  const g4lidar::model* const model = g4lidar::model_named(word);
   for (const g4lidar::parameter& each : g4lidar::all_parameters()) {
     if (each.kind != g4lidar::parameter_kind::read_only)
       declare(node, model != nullptr ? g4lidar::limited_to(*model, each) : each);

@@ -2,7 +2,6 @@
 #include "topics.hpp"
 
 #include <algorithm>
-#include <span>
 
 #include <rclcpp/time.hpp>
 
@@ -12,17 +11,17 @@ namespace {
 /// A reliable publisher serves reliable and best-effort subscribers.
 rclcpp::QoS scan_quality() { return rclcpp::QoS(5).reliable().durability_volatile(); }
 
-}  // namespace
-
-lidar_topics::lidar_topics(rclcpp_lifecycle::LifecycleNode& node)
-    : scans(node, "scan", scan_quality()), clouds(node, "points", scan_quality()) {}
-
 std_msgs::msg::Header header_of(const g4lidar::message_header& from) {
   std_msgs::msg::Header made;
   made.stamp = rclcpp::Time(from.stamp_ns);
   made.frame_id = from.frame_id;
   return made;
 }
+
+}  // namespace
+
+lidar_topics::lidar_topics(rclcpp_lifecycle::LifecycleNode& node)
+    : scans(node, "scan", scan_quality()), clouds(node, "points", scan_quality()) {}
 
 std::unique_ptr<sensor_msgs::msg::LaserScan> laser_scan_of(const g4lidar::scan& for_grid,
                                                            g4lidar::message_header header,

@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <memory>
 #include <string>
-#include <vector>
 
 #include <nav_msgs/msg/odometry.hpp>
 #include <rclcpp_lifecycle/lifecycle_node.hpp>
@@ -77,8 +76,6 @@ struct lidar_topics {
   std::unique_ptr<counted_publisher<rosgraph_msgs::msg::Clock>> clock;
 };
 
-/// The header of a message.
-[[nodiscard]] std_msgs::msg::Header header_of(const g4lidar::message_header& from);
 /// A revolution as put_laser_scan() writes it, with `bins` ranges; `header.duration_ns` is that of the revolution.
 [[nodiscard]] std::unique_ptr<sensor_msgs::msg::LaserScan> laser_scan_of(
     const g4lidar::scan& for_grid, g4lidar::message_header header,

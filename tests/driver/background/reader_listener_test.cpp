@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <fstream>
+#include <map>
 #include <memory>
 #include <string>
 #include <thread>
@@ -53,6 +54,30 @@ TEST_F(ReaderListener, GetsScansUntilTheReaderIsStopped) {
   EXPECT_EQ(heard.live_points, 0U) << "not wanted";
   EXPECT_EQ(heard.states.front(), "running");
   EXPECT_EQ(heard.opened, 1);
+}
+
+/// An SCL has the number 22. This one states another one in its revolutions.
+TEST_F(ReaderListener, StatusHasAsWhichModelItIsRead_AlsoWhatBecomesKnownLater) {
+  const auto facts_of = [](const background_reader& of) {
+    std::map<std::string, std::string> all;
+    for (const auto& [name, text] : of.status().recognised) all.emplace(name, text);
+    return all;
+  };
+  background_reader& made =
+      begin("sim:?model=scl&model_id=4&ct_information=true&ct_crc=true&stray_before_zero=true", {},
+            {.starts_rested = true});
+  ASSERT_TRUE(heard.wait_for_state("resting"));
+  std::map<std::string, std::string> facts = facts_of(made);
+  EXPECT_EQ(facts["model"], "scl");
+  EXPECT_EQ(facts["candidates"], "scl");
+  EXPECT_EQ(facts["known_by"], "recording");
+  EXPECT_EQ(facts.count("contradictions"), 0U);
+  made.rest(false);
+  ASSERT_TRUE(comes_true([&] { return facts_of(made).contains("contradictions"); }));
+  facts = facts_of(made);
+  EXPECT_EQ(facts["number"], "4");
+  EXPECT_NE(facts["contradictions"].find("reports the number 4"), std::string::npos);
+  EXPECT_EQ(made.status().information->model, 4);
 }
 
 TEST_F(ReaderListener, GetsPointsBeforeTheirScan) {

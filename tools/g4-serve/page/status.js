@@ -7,6 +7,7 @@ import { element } from './input.js';
  * @typedef {{name: string, value: number | string, unit?: string}} Evidence
  * @typedef {{stage: string, lidar?: string, verdict: string, diagnoses: Diagnosis[], evidence: Evidence[],
  *   remark?: string}} Stage
+ * @typedef {{name?: string, recognition: Record<string, string> | null}} Recognised  A lidar in a status.
  */
 
 const verdicts = ['skipped', 'ok', 'warn', 'fail'];
@@ -82,7 +83,7 @@ class Table {
   }
 }
 
-/** @param {Stage} stage @returns {string} Its name, after that of the lidar if there are several. */
+/** @param {{stage: string, lidar?: string}} stage @returns {string} Its name, after that of the lidar if there are several. */
 function head_of({ stage, lidar }) {
   return lidar ? `${lidar}: ${words_of(stage)}` : words_of(stage);
 }
@@ -136,7 +137,22 @@ export class Panels {
     for (const [name, value] of Object.entries(status.counts ?? {})) {
       this.counts.set(words_of(name), number_text(value));
     }
-    this.#show_stages(status.stages ?? []);
+    const stages = status.stages ?? [];
+    this.#show_stages([...this.#contradictions(status.lidars ?? [status]), ...stages]);
+  }
+
+  /** Shows as which models the lidars are read. @param {Recognised[]} lidars @returns {Stage[]} What contradicts. */
+  #contradictions(lidars) {
+    return lidars.flatMap(({ name: lidar, recognition }) => {
+      const { contradictions = '', ...facts } = recognition ?? {};
+      for (const [name, text] of Object.entries(facts)) {
+        this.numbers.set(head_of({ stage: name, lidar }), text);
+      }
+      const stage = { stage: 'model', lidar, verdict: 'ok', diagnoses: [], evidence: [] };
+      const found = [{ name: 'contradictions', cause: contradictions, advice: '' }];
+      if (contradictions) return [{ ...stage, verdict: 'warn', diagnoses: found }];
+      return this.rows.has(head_of(stage)) ? [stage] : [];
+    });
   }
 
   /** @param {number} points  Of the scan that is shown. */
