@@ -193,7 +193,7 @@ TEST(Search, EveryModel_IsFoundInTime) {
 
 // bench/search.sh prints the times, of more openings.
 TEST(Search, EveryModel_HasItsFirstScanAtMost600MsLaterThanIfItIsNamed) {
-  constexpr int runs = 5;
+  constexpr int runs = 3;
   for (const model& each : models) {
     for (const bool is_sending : {false, true}) {
       SCOPED_TRACE(std::string(each.word) + (is_sending ? ", scanning" : ", idle"));
