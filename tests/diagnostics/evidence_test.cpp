@@ -65,7 +65,7 @@ void expect_outcomes(const examined& done) {
   }
 }
 
-/// What is said of the line as a whole: the rate, and that nothing arrives.
+/// What is stated about the baud rate, and about silence.
 void expect_contact(const examined& done, const stage_report& baud) {
   if (has(baud, wrong_baud_rate)) {
     EXPECT_EQ(sum_of(done, "packets"), 0.0);

@@ -222,8 +222,8 @@ void invariant_checker::check_recognition() {
   if (known.model->word != device.model) fail("read as " + std::string(known.model->word));
   if (device.one_way) return;
   if (known.number != device.info.model) fail("the number is not known");
-  const bool is_told = contradictions_of(known).find("reports the number") != std::string::npos;
-  if (is_told != has_other_number(*parameters_)) fail("the number is told wrongly");
+  const bool is_reported = contradictions_of(known).find("reports the number") != std::string::npos;
+  if (is_reported != has_other_number(*parameters_)) fail("the number is reported wrongly");
 }
 
 /// `taken` points were read by next_points(); `all`: no more are there.
