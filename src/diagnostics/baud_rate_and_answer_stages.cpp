@@ -101,7 +101,8 @@ bool live_run::find_device() {
   }
   if (goes_on) {
     contact_.report_scanning();
-    add_model(baud, lidar_);
+    const bool has_number = replies_.snapshot(*lidar_.which).information.has_value();
+    if (has_number || lidar_.is_named || !lidar_.candidates.empty()) add_model(baud, lidar_);
     if (lidar_.has_baud) {
       add_rate_difference(baud, link_.port().baud(), log_.options().baud, *lidar_.which);
     }
@@ -154,7 +155,7 @@ bool live_run::interview() {
     device_ = replies_.snapshot(*lidar_.which);
   }
   if (link_.is_over()) return false;
-  return report_identity(log_, device_.information, *lidar_.which, lidar_.is_named) &&
+  return report_identity(log_, device_.information, *lidar_.which, link_.port().baud()) &&
          report_health(log_, device_.condition);
 }
 

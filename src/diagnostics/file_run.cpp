@@ -184,7 +184,7 @@ class file_run {
     }
     if (!device_.information) device_.information = stated_.who();
     if (!device_.condition) device_.condition = stated_.condition();
-    report_identity(log_, device_.information, model_, log_.options().model != nullptr);
+    report_identity(log_, device_.information, model_, 0);
     report_health(log_, device_.condition);
     stage_report motor{.stage = diagnostic_stage::motor};
     // Two comparisons of the speed need three times its samples; a head that stands still shows it sooner.

@@ -194,7 +194,7 @@ bool first_contact::recognise(const exchange& first) {
   const auto who = several.snapshot(*lidar.which).information;
   if (!who) return true;
   const std::uint32_t baud = of_.link.port().baud();
-  if (lidar.is_named) return models_that_fit({.id = who->model}).empty();
+  if (lidar.is_named) return !refuses_number(of_.log.options(), *lidar.which, who->model, baud);
   const bool is_other_product = !other_product(who->model).empty();
   lidar_signs known{.baud = baud,
                     .is_baud_certain = lidar.has_baud,

@@ -66,6 +66,7 @@ class live_run {
   /// Waits until the head has its speed, or will not reach it.
   [[nodiscard]] scan_state warm_up(stream_statistics& measured);
   [[nodiscard]] scan_state listen_once(stream_statistics& measured);
+  [[nodiscard]] bool is_of_other_size() const;
   bool follow_samples();
   /// How long the scan may be silent at this time.
   [[nodiscard]] std::int64_t patience_ns() const;
@@ -95,7 +96,7 @@ class live_run {
   std::int64_t measured_ns_ = 0;
   unsigned restarts_ = 0;
   bool has_motor_line_ = false;  // DTR
-  std::string contradiction_;    // of number and samples
+  std::string reading_;          // as what, where the samples decided it
 };
 
 }  // namespace g4lidar

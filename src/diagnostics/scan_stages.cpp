@@ -88,6 +88,7 @@ live_run::scan_state live_run::warm_up(stream_statistics& measured) {
   while (link_.now_ns() < until_ns) {
     const scan_state state = listen_once(measured);
     if (state != scan_state::runs) return state;
+    if (is_of_other_size() && lidar_.is_named) return scan_state::over;
     if (follow_samples()) measured = stream_statistics(*lidar_.which);
     if (started_.first_packet_ns == 0) {
       // A device that boots again and again is never silent.
@@ -101,24 +102,29 @@ live_run::scan_state live_run::warm_up(stream_statistics& measured) {
   return scan_state::runs;
 }
 
-/// The number may be that of another model: its packets decide. Whether they are read in another way from here on.
-bool live_run::follow_samples() {
+/// Whether the packets have samples of another size than the model.
+bool live_run::is_of_other_size() const {
   const layout_recogniser& seen = link_.layout();
   const std::size_t size = seen.sample_bytes();
   const std::size_t own = sample_size(lidar_.which->samples.layout);
   constexpr std::uint32_t in_a_row = 5;
-  if (lidar_.is_named || size == 0 || size == own || seen.votes(own) > 0 ||
-      seen.votes(size) < in_a_row) {
-    return false;
-  }
+  return size != 0 && size != own && seen.votes(own) == 0 && seen.votes(size) >= in_a_row;
+}
+
+/// The number may be that of another model: its packets decide. Whether they are read in another way from here on.
+bool live_run::follow_samples() {
+  if (!is_of_other_size()) return false;
+  const std::size_t size = link_.layout().sample_bytes();
   auto fitting = models_that_fit({.baud = link_.port().baud(),
                                   .is_baud_certain = lidar_.has_baud,
                                   .sample_bytes = size,
                                   .answers = presence::yes});
   if (fitting.empty()) return false;
-  contradiction_ = "Its number is that of " + one_of(*lidar_.which) + ", and its samples have " +
-                   std::to_string(size) + " bytes, as those of " + one_of(*fitting.front()) +
-                   ": it is read as that one.";
+  const std::string samples = "samples have " + std::to_string(size) + " bytes, as those of " +
+                              one_of(*fitting.front()) + ": it is read as that one.";
+  reading_ = device_.information
+                 ? "Its number is that of " + one_of(*lidar_.which) + ", and its " + samples
+                 : "Its " + samples;
   lidar_.which = fitting.front();
   lidar_.candidates = std::move(fitting);
   link_.read_as(*lidar_.which);
@@ -162,9 +168,12 @@ bool live_run::start_motor() {
     }
   }
   if (state == scan_state::runs) judge_motor(motor, measured_);
-  if (!contradiction_.empty()) {
-    motor.find(diagnosis::other_number);
-    motor.remark = contradiction_;
+  if (!reading_.empty()) {
+    if (device_.information) motor.find(diagnosis::other_number);
+    motor.remark = reading_;
+  }
+  if (lidar_.is_named && is_of_other_size()) {
+    find_other_layout(motor, link_.layout(), *lidar_.which);
   }
   add_failure(motor);
   const bool runs = state == scan_state::runs && !link_.is_over();

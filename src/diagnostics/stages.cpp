@@ -78,8 +78,13 @@ std::string words_of(std::span<const model* const> all) {
   return list_of(all, [](const model* each) { return each->word; }, " and ");
 }
 
+bool refuses_number(const diagnostic_options& options, const model& stated, std::uint8_t number,
+                    std::uint32_t baud) {
+  return !options.insist_on_model && is_surely_another(stated, number, baud);
+}
+
 bool report_identity(stage_log& log, const std::optional<device_information>& known,
-                     const model& wanted, bool is_named) {
+                     const model& wanted, std::uint32_t baud) {
   if (!known) {
     log.skip(diagnostic_stage::identity, "There is no device information.");
     return true;
@@ -93,12 +98,9 @@ bool report_identity(stage_log& log, const std::optional<device_information>& kn
   identity.add("serial_number",
                std::string(known->serial_digits.begin(), known->serial_digits.end()));
   const bool is_wanted = known->model == wanted.ids[0] || known->model == wanted.ids[1];
-  // As the driver judges it: a number that several one-way models report contradicts none of them surely.
-  const bool is_surely_other =
-      wanted.link == link_kind::one_way
-          ? one_way_other_than(wanted, known->model) != nullptr
-          : !other_product(known->model).empty() ||
-                (is_named && !models_that_fit({.id = known->model}).empty());
+  const bool is_stated = log.options().model != nullptr || wanted.link == link_kind::one_way;
+  const bool is_surely_other = is_stated ? refuses_number(log.options(), wanted, known->model, baud)
+                                         : !other_product(known->model).empty();
   if (!is_wanted) {
     identity.find(is_surely_other ? diagnosis::other_device : diagnosis::other_number);
     identity.remark = other_number(known->model, wanted);

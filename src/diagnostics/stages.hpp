@@ -67,9 +67,12 @@ void examine_file(const std::string& source, stage_log& log);
 /// The program was suspended for as long as a stall: what depends on time is not judged.
 [[nodiscard]] bool is_host_busy(const stream_statistics& measured) noexcept;
 
-/// identity; false for another model than `wanted`.
+/// Whether a lidar that was named is refused for its number, as lidar::open() refuses it. `baud` 0: not known.
+[[nodiscard]] bool refuses_number(const diagnostic_options& options, const model& stated,
+                                  std::uint8_t number, std::uint32_t baud);
+/// identity; false for another model than `wanted`, surely. `baud` 0: not known.
 bool report_identity(stage_log& log, const std::optional<device_information>& known,
-                     const model& wanted, bool is_named);
+                     const model& wanted, std::uint32_t baud);
 /// health; false if the device reports an error.
 bool report_health(stage_log& log, const std::optional<health>& known);
 /// Up to this number of packets the motor cannot be evaluated.
@@ -98,9 +101,9 @@ void report_latency(stage_log& log, const stream_statistics& measured, std::uint
 [[nodiscard]] std::string digits_of(unsigned number, unsigned base, std::size_t count);
 /// "10c4:ea60": vendor and product.
 [[nodiscard]] std::string usb_id_of(const port_info& port);
-/// Whether the samples have a size that no lidar like `wanted` sends; then adds this to `report`.
 /// What was examined is no stream of a lidar: of another maker, text, or changed on the way. Returns whether it is not.
 bool find_other_source(stage_report& report, const stream_survey& seen);
+/// Whether the samples have a size that no lidar like `wanted` sends; then adds this to `report`.
 bool find_other_layout(stage_report& report, const layout_recogniser& seen, const model& wanted);
 /// Whether this path leads to a pseudo-terminal.
 [[nodiscard]] bool is_pty(const std::string& path);

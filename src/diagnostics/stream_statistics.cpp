@@ -267,7 +267,9 @@ std::vector<diagnosis> diagnoses_of(const stream_statistics& measured) {
     found.push_back(what);
   }
   // A revolution lost a packet where its damage cannot be evaluated.
-  if (found.empty() && measured.tally().counts.crc_mismatches > 0) return {diagnosis::packets_lost};
+  const stream_counter& counts = measured.tally().counts;
+  const bool is_whole = damage.unclear > 0 && counts.skipped_bytes() == 0;
+  if (found.empty() && (counts.crc_mismatches > 0 || is_whole)) return {diagnosis::packets_lost};
   if (found.empty() && damage.unclear > 0) found.push_back(diagnosis::line_noise);
   return found;
 }

@@ -25,27 +25,35 @@ class inquiry {
  public:
   /// `samples` as the device sends them.
   inquiry(transport& port, sample_format samples, stop_attempts how) noexcept
-      : port_(port), input_(samples), link_(input_, &port, times_for(how)) {}
+      : port_(port), how_(how), input_(samples), link_(input_, &port, times_for(how)) {}
 
   [[nodiscard]] result<device_information> ask(std::int64_t deadline_ns) {
     session& talk = link_.talk();
-    static_cast<void>(talk.begin(requests::device_info(), port_.now_ns()));
+    const std::int64_t begin_ns = port_.now_ns();
+    static_cast<void>(talk.begin(requests::device_info(), begin_ns));
     while (port_.now_ns() < deadline_ns) {
       const auto sent = link_.send([&](bytes out) { return port_.write(out, deadline_ns); });
       if (!sent) return tl::unexpected(sent.error());
       if (const auto ended = talk.finished()) return judge(*ended);
       const auto got = link_.receive(buffer_, std::min(link_.due_ns(), deadline_ns));
       if (!got) return tl::unexpected(got.error());
-      link_.events([this](const event& found) {
+      bool still_sends = false;
+      link_.events([&](const event& found) {
         has_heard_ = true;
-        has_packets_ = has_packets_ || std::holds_alternative<packet_view>(found);
+        still_sends = still_sends || std::holds_alternative<packet_view>(found);
       });
+      has_packets_ = has_packets_ || still_sends;
+      const bool is_late = port_.now_ns() > begin_ns + slowest_stop_ns;
+      if (how_ == stop_attempts::one && still_sends && is_late) return nothing_believable();
       if (port_.now_ns() >= talk.next_look_ns()) talk.look(port_.now_ns());
     }
     return nothing_believable();
   }
 
  private:
+  /// What sends a packet after this time does not stop: answers are known that take 350 ms.
+  static constexpr std::int64_t slowest_stop_ns = 380'000'000;
+
   /// A stop is repeated when the stream has not ended in the time for it.
   [[nodiscard]] static session_times times_for(stop_attempts how) noexcept {
     session_times times;
@@ -67,6 +75,7 @@ class inquiry {
   }
 
   transport& port_;
+  stop_attempts how_;
   event_reader input_;
   device_link link_;
   std::array<std::uint8_t, 4096> buffer_{};

@@ -2,7 +2,6 @@
 #include "lidar_search.hpp"
 
 #include <algorithm>
-#include <iterator>
 #include <span>
 #include <utility>
 
@@ -25,11 +24,12 @@ constexpr std::int64_t write_ns = 100'000'000;
 /// Fewer bytes in a time of listening are noise, or the end of a message.
 constexpr std::size_t stream_bytes = 32;
 
-/// Several of the longest packets: one of them is whole.
-constexpr std::size_t hopeless_bytes = 600;
+/// Two of the longest packets: one of them is whole.
+constexpr std::size_t hopeless_bytes = 340;
 
-/// The rates at which two-way lidars answer, those with the most users first.
-constexpr std::array<std::uint32_t, 5> asking_rates{230'400, 128'000, 512'000, 115'200, 153'600};
+/// The rates at which two-way lidars answer, those with the most users first. At the last one no motor is driven by DTR:
+/// such a motor starts later.
+constexpr std::array<std::uint32_t, 5> asking_rates{230'400, 128'000, 115'200, 153'600, 512'000};
 
 }  // namespace
 
@@ -79,8 +79,8 @@ lidar_search::found lidar_search::round(bool is_first) {
     done = question(rates_.front(), is_first ? answer_ns : late_answer_ns);
     if (!done || *done) return done;
   }
-  // What sends at another rate makes bytes at this one, too.
-  const bool is_silent = heard_.bytes == 0 && !only_listens();
+  // What sends at another rate makes bytes at this one, too; few are a late answer.
+  const bool is_silent = heard_.bytes < stream_bytes && !only_listens();
   for (std::size_t i = has_fixed_rate_ || is_silent ? rates_.size() : 1; i < rates_.size(); ++i) {
     done = visit(rates_[i], listening_ns);
     if (!done || *done) return done;
@@ -102,15 +102,10 @@ lidar_search::found lidar_search::round(bool is_first) {
 
 /// At all rates but the first.
 lidar_search::found lidar_search::ask_the_others(std::int64_t wait_ns) {
-  const auto is_listed = [](const auto& all, std::uint32_t baud) {
-    return std::ranges::find(all, baud) != all.end();
-  };
-  std::vector<std::uint32_t> order;
-  std::ranges::copy_if(asking_rates, std::back_inserter(order),
-                       [&](std::uint32_t baud) { return is_listed(rates_, baud); });
-  std::ranges::copy_if(rates_, std::back_inserter(order),
-                       [&](std::uint32_t baud) { return !is_listed(asking_rates, baud); });
-  std::erase(order, rates_.front());
+  std::vector<std::uint32_t> order(rates_.begin() + 1, rates_.end());
+  std::ranges::sort(order, {}, [](std::uint32_t baud) {
+    return std::ranges::find(asking_rates, baud) - asking_rates.begin();
+  });
   for (const std::uint32_t baud : order) {
     auto done = question(baud, wait_ns);
     if (!done || *done) return done;
@@ -206,7 +201,8 @@ void lidar_search::take(bytes input) {
 }
 
 bool lidar_search::is_hopeless() const noexcept {
-  return heard_.bytes >= hopeless_bytes && !heard_.stream.has_packet() && !heard_.device;
+  return heard_.bytes >= hopeless_bytes && !heard_.stream.has_packet() && !heard_.device &&
+         !heard_.maker.is_likely();
 }
 
 tl::unexpected<error> lidar_search::not_found() const {

@@ -22,7 +22,7 @@ enum class stop_attempts : std::uint8_t;
 /// One search. *Single thread; allocates.*
 ///
 /// Two-way lidars are silent until they are asked; one-way lidars send always, and answer nothing. So it
-/// listens first, and asks only where it is silent: with `90`, two bytes that change nothing. Where nothing at all
+/// listens first, and asks only where it is silent: with `90`, two bytes that change nothing. Where next to nothing
 /// arrives, nothing sends at any rate: so it does not listen at the others. Only a stream of packets that a two-way
 /// lidar may send is stopped, and once where a one-way lidar may send it, too. A one-way lidar that was named gets no
 /// byte.
@@ -35,8 +35,8 @@ class lidar_search {
  private:
   /// Two revolutions at 4 Hz: the CT bytes of one of them are complete.
   static constexpr std::int64_t information_ns = 600'000'000;
-  /// One attempt to stop a scan, and a slow answer; or several.
-  static constexpr std::int64_t one_stop_ns = 700'000'000;
+  /// One attempt to stop a scan, and a slow answer.
+  static constexpr std::int64_t one_stop_ns = 1'000'000'000;
   static constexpr std::int64_t look_ns =
       50'000'000;  // between two questions whether it is cancelled
 

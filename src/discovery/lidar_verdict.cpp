@@ -77,7 +77,9 @@ lidar_search::found lidar_search::judge_stream() {
   const bool is_doubtful = std::ranges::any_of(models_that_fit(signs()), is_one_way);
   // A one-way lidar is not to be disturbed: its CT bytes or its sample rate may be sufficient.
   if (is_doubtful) {
-    const auto is_certain = [this] { return !may_be_two_way(signs()); };
+    const auto is_certain = [this] {
+      return heard_.stream.has_stated_all() || !may_be_two_way(signs());
+    };
     if (auto done = listen(informed_ns, is_certain); !done) return tl::unexpected(done.error());
   }
   lidar_signs known = signs();
@@ -126,7 +128,7 @@ lidar_search::found lidar_search::judge_named() {
 lidar_search::found lidar_search::judge_silent(lidar_signs known, std::int64_t until_ns) {
   known.answers = presence::no;
   if (!models_that_fit(known).empty()) {
-    const auto is_informed = [this] { return heard_.stream.information().has_value(); };
+    const auto is_informed = [this] { return heard_.stream.has_stated_all(); };
     if (auto done = listen(until_ns, is_informed); !done) return tl::unexpected(done.error());
     known = signs();
     known.answers = presence::no;
@@ -181,7 +183,8 @@ lidar_search::found lidar_search::judge_number(lidar_signs known) {
 lidar_search::found lidar_search::judge_reply() {
   lidar_signs known = signs();
   known.answers = presence::no;
-  if (!models_that_fit(known).empty()) {
+  const auto may_announce = [&](const model* row) { return has_rate(*row, port_.baud()); };
+  if (std::ranges::any_of(models_that_fit(known), may_announce)) {
     const auto is_stream = [this] { return heard_.stream.sample_bytes() != 0; };
     if (auto done = listen(in_ns(announcement_ns), is_stream); !done) {
       return tl::unexpected(done.error());

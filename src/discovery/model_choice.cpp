@@ -49,9 +49,13 @@ bool may_measure(const model& row, std::uint32_t hz) noexcept {
 }
 
 bool is_surely_another(const model& stated, std::uint8_t number, std::uint32_t baud) noexcept {
+  const auto has_number = [number](const model& row) {
+    return std::ranges::find(row.ids, number) != row.ids.end();
+  };
+  if (has_number(stated)) return false;
+  if (stated.link == link_kind::one_way) return one_way_other_than(stated, number) != nullptr;
   return std::ranges::any_of(models, [&](const model& row) {
-    return std::ranges::find(row.ids, number) != row.ids.end() &&
-           may_send(row, sample_size(stated.samples.layout), false) &&
+    return has_number(row) && may_send(row, sample_size(stated.samples.layout), false) &&
            (baud == 0 || has_rate(row, baud));
   });
 }

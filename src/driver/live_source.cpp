@@ -131,9 +131,7 @@ result<void> live_source::identified(const device_information& who) {
 /// samples has another number anyhow.
 bool live_source::refuses(const device_information& who) const noexcept {
   if (options_.insist_on_model || recognised_.get().by == known_by::samples) return false;
-  const model& stated = *options_.model;
-  return stated.link == link_kind::one_way ||
-         is_surely_another(stated, who.model, connection_.on().baud());
+  return is_surely_another(*options_.model, who.model, connection_.on().baud());
 }
 
 /// The samples have another size than those of the model: they decide, unless the user does.

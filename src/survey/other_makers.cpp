@@ -113,11 +113,13 @@ std::size_t capsule(bytes data, std::size_t size) noexcept {
 std::size_t short_capsule(bytes data) noexcept { return capsule(data, 84); }
 std::size_t long_capsule(bytes data) noexcept { return capsule(data, 132); }
 
-/// A sample of a standard scan: a start bit and its inverse, a bit that is always 1, and an angle.
+/// A sample of a standard scan: a start bit and its inverse, a bit that is always 1, and an angle. The start bit is set once
+/// in a turn: not in one byte again and again.
 std::size_t slamtec_sample(bytes data) noexcept {
   constexpr std::size_t size = 5;
   constexpr unsigned full_turn = 360 * 64;
   if (data.size() < size) return 0;
+  if (data.size() > size && (data[0] & data[size] & 1U) != 0) return 0;
   const bool has_start = ((data[0] ^ data[0] >> 1U) & 1U) == 1;
   const bool is_sample = has_start && (data[1] & 1U) == 1 && load_u16(data, 1) >> 1U < full_turn;
   return is_sample ? size : 0;
@@ -222,5 +224,14 @@ void maker_recogniser::take(bytes input) noexcept {
 }
 
 void maker_recogniser::finish() noexcept { look(size_); }
+
+bool maker_recogniser::is_likely() const noexcept {
+  maker_recogniser all = *this;
+  all.finish();
+  for (std::size_t i = 0; i < kinds.size(); ++i) {
+    if (5 * all.runs_[i].frames >= kinds[i].enough) return true;
+  }
+  return false;
+}
 
 }  // namespace g4lidar

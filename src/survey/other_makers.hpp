@@ -35,6 +35,9 @@ class maker_recogniser {
   /// The first maker that was recognised; null: none yet. Valid forever.
   [[nodiscard]] const other_maker* found() const noexcept { return found_; }
 
+  /// Whether the last frames are a fifth of what is enough to recognise a maker.
+  [[nodiscard]] bool is_likely() const noexcept;
+
  private:
   /// At least the size of the longest frame.
   static constexpr std::size_t longest = 512;

@@ -199,7 +199,7 @@ const std::vector<belief> beliefs{
      {"scanning"}},
     {"X4_isNoG4", "x4", "g4", 0, "other_device", {"an X4 at 128000 baud", "not a G4"}},
     {"G4_isNoX4", "g4", "x4", 0, "other_device", {"a G4 at 230400 baud", "not an X4"}},
-    {"G2_isNoG4", "g2", "g4", 0, "other_device", {"15 is that of a G2", "that of a G4 is 5"}},
+    {"G2_isNoG4", "g2", "g4", 0, "answers_missing other_number other_device", {"have 3 bytes"}},
     {"TG15_isNoTG30", "tg15", "tg30", 0, "other_device", {"100 is that of a TG15", "TG30 is 101"}},
     {"G4_isNoX2", "g4", "x2", 0, "other_device", {"a G4 at 230400 baud", "not an X2"}},
     {"X4_isNoX4Pro", "x4", "x4-pro", 0, "other_device", {"an X4", "not an X4 Pro"}},

@@ -6,8 +6,10 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <string>
 #include <variant>
 #include <vector>
@@ -141,6 +143,47 @@ TEST(Returns, NoFalseAlarmInAnyWorld) {
         EXPECT_FALSE(has_target(scene, options, from[i] + 1, to[i] - 1))
             << which.word << run << done;
       }
+    }
+  }
+}
+
+/// The directions of all returns, decoded independently of this project.
+std::vector<double> returns_in(const std::filesystem::path& table) {
+  std::ifstream file(table);
+  std::vector<double> all;
+  std::string line;
+  std::getline(file, line);  // the header
+  while (std::getline(file, line)) {
+    double range_mm = 0.0;
+    double angle_deg = 0.0;
+    EXPECT_EQ(std::sscanf(line.c_str(), "%*u,%*u,%*u,%*u,%*u,%lf,%*f,%lf", &range_mm, &angle_deg),
+              2);
+    if (range_mm > 0.0) all.push_back(angle_deg);
+  }
+  return all;
+}
+
+TEST(Returns, NoFalseAlarmInBytesOfARealX4) {
+  const std::filesystem::path captures = G4LIDAR_SOURCE_DIR "/../shared/captures";
+  if (!std::filesystem::exists(captures)) {
+    GTEST_SKIP() << "The recorded bytes are not at hand: there is no directory shared/captures "
+                    "beside the project. They belong to third parties and are not part of it.";
+  }
+  for (const std::string name : {"x4_scan1", "x4_stream"}) {
+    const auto directions = returns_in(captures / (name + ".points.csv"));
+    ASSERT_GT(directions.size(), 100U);
+    examined done;
+    done.stages =
+        diagnose("file:" + (captures / (name + ".bin")).string(), {.model = model_named("x4")});
+    EXPECT_EQ(done.diagnoses().find("no_returns"), std::string::npos) << done;
+    const stage_report& report = done.at(diagnostic_stage::returns);
+    EXPECT_EQ(report.outcome == stage_verdict::ok, name == "x4_scan1") << "the other is too short";
+    const auto from = degrees_of(report, "nothing_from_deg");
+    const auto to = degrees_of(report, "nothing_to_deg");
+    for (std::size_t i = 0; i < from.size(); ++i) {
+      const double width = std::fmod(to[i] - from[i] + 359.0, 360.0) + 1.0;  // or a whole turn
+      for (const double each : directions)
+        EXPECT_GE(std::fmod(each - from[i] + 720.0, 360.0), width) << each << done;
     }
   }
 }

@@ -47,8 +47,8 @@ TEST(WrittenBytes, SilentPort_GetsTheQuestionForItsIdentityAlone) {
   const written seen = examine_noting({}, faults_of({"deaf"}));
   EXPECT_EQ(seen.done.diagnoses(), "silent") << seen.done;
   const std::vector<std::string> expected{"90@230400",  //
-                                          "90@230400", "90@128000", "90@512000", "90@115200",
-                                          "90@153600", "dtr=0",     "dtr=1",     "dtr=0",
+                                          "90@230400", "90@128000", "90@115200", "90@153600",
+                                          "90@512000", "dtr=0",     "dtr=1",     "dtr=0",
                                           "90@230400", "90@230400"};
   EXPECT_EQ(seen.notes, expected);
   EXPECT_NE(seen.done.at(diagnostic_stage::answers).remark.find("No model was named"),

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "first_scan.hpp"
 #include "search_bench.hpp"
 
 namespace g4lidar::test {
@@ -186,6 +187,52 @@ TEST(Search, EveryModel_IsFoundInTime) {
       EXPECT_EQ(lidar.was_scanning, scanning || each.link == link_kind::one_way);
       expect_harmless(done.notes, needs_pulse);
       EXPECT_LE(stops_in(done.notes), each.link == link_kind::one_way ? 1 : 2);
+    }
+  }
+}
+
+// bench/search.sh prints the times, of more openings.
+TEST(Search, EveryModel_HasItsFirstScanAtMost600MsLaterThanIfItIsNamed) {
+  constexpr int runs = 3;
+  for (const model& each : models) {
+    for (const bool is_sending : {false, true}) {
+      SCOPED_TRACE(std::string(each.word) + (is_sending ? ", scanning" : ", idle"));
+      const search_delay delay = delay_of_search(each, is_sending, runs);
+      EXPECT_TRUE(delay.good);
+      EXPECT_LE(delay.added_ns, 600 * ms);
+    }
+  }
+}
+
+TEST(Search, DeviceThatAnswersLate_IsFound) {
+  for (const model& each : models) {
+    if (each.link == link_kind::one_way) continue;
+    for (const bool is_scanning : {false, true}) {
+      SCOPED_TRACE(std::string(each.word) + (is_scanning ? ", scanning" : ""));
+      sim::device_options options = options_of(each.word);
+      options.reaction_ns = 350 * ms;
+      std::vector<sim::fault> faults;
+      if (is_scanning) faults.push_back(sim::make_fault(fault_kind::scanning));
+      const bool needs_pulse = is_scanning && each.motor == motor_kind::dtr;
+      const searched done = search_at(options, {.may_pulse_dtr = needs_pulse}, faults);
+      ASSERT_TRUE(done.lidar) << done.lidar.error().message() << text_of(done.notes);
+      EXPECT_EQ(done.lidar->device.model, each.ids[0]);
+      EXPECT_FALSE(done.lidar->is_silent);
+    }
+  }
+}
+
+TEST(Search, MotorThatNeedsTwoSecondsAfterDtr_IsFound) {
+  for (const model& each : models) {
+    if (each.link == link_kind::two_way || each.motor != motor_kind::dtr) continue;
+    for (const auto start : {sim::dtr_start::level, sim::dtr_start::pulse}) {
+      SCOPED_TRACE(each.word);
+      sim::device_options options = options_of(each.word);
+      options.dtr_starts_by = start;
+      options.standstill_ns = 1'900 * ms;
+      const searched done = search_at(options, {.may_pulse_dtr = true}, {}, true);
+      ASSERT_TRUE(done.lidar) << done.lidar.error().message();
+      EXPECT_EQ(done.lidar->model->word, name_of(each));
     }
   }
 }

@@ -23,8 +23,8 @@ using clock = std::chrono::steady_clock;
 constexpr std::int64_t second = 1'000'000'000;
 
 /// In the order of docs/design/ports.md.
-const std::vector<std::string> one_round{"90@230400", "90@128000", "90@512000", "90@115200",
-                                         "90@153600"};
+const std::vector<std::string> one_round{"90@230400", "90@128000", "90@115200", "90@153600",
+                                         "90@512000"};
 
 bool has(std::string_view text, std::string_view part) {
   return text.find(part) != std::string_view::npos;
@@ -41,7 +41,7 @@ TEST(SilentPort, Search_AsksOnceAtEachRateOfARound) {
   EXPECT_EQ(done.lidar.error().code(), problem::silence);
   EXPECT_EQ(done.lidar.error().detail(), error_detail::searched);
   EXPECT_TRUE(
-      done.lidar.error().subject().ends_with(" at 230400, 128000, 512000, 115200, 153600 baud"))
+      done.lidar.error().subject().ends_with(" at 230400, 128000, 115200, 153600, 512000 baud"))
       << done.lidar.error().subject();
 }
 
@@ -82,7 +82,7 @@ TEST(SilentPort, OpenedWithoutAModel_GetsQuestionsAlone) {
   EXPECT_EQ(done.why->code(), problem::silence);
   EXPECT_EQ(done.why->doing(), task::opening);
   EXPECT_EQ(done.why->subject(),
-            nothing.path() + " at 230400, 128000, 512000, 115200, 153600 baud");
+            nothing.path() + " at 230400, 128000, 115200, 153600, 512000 baud");
   const std::string text = done.why->message();
   EXPECT_TRUE(has(text, "(options model and baud, --model and --baud)")) << text;
   EXPECT_FALSE(has(text, "G4") || has(text, "omit")) << text;

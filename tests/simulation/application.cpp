@@ -100,10 +100,7 @@ void application::print_events() {
     log(text_of("event %s, %s at %.6f", name_of(event->what).data(), name_of(event->reason).data(),
                 in_seconds(event->time_ns)));
     checker_.breaks();
-    // Nothing is wrong with these: a one-way lidar goes on when it was stopped.
-    const bool goes_on =
-        event->what == lidar_event::kind::still_turning && parameters_.device.one_way;
-    if (event->what == lidar_event::kind::spinning_up || goes_on) continue;
+    if (is_usual(parameters_, event->what)) continue;
     if (parameters_.healthy)
       fail("an event in a healthy run: " + std::string(name_of(event->what)));
   }
@@ -149,7 +146,7 @@ void application::open() {
     if (parameters_.healthy) fail("a healthy device does not open: " + made.error().message());
     return sleep_until(now() + 200 * ms);
   }
-  log(text_of("open"));
+  log("open");
   ++report_.opens;
   lidar_ = std::make_unique<lidar>(std::move(*made));
   taken_ = 0;
@@ -325,6 +322,7 @@ void application::read_calmly() {
 }
 
 void application::finish() {
+  checker_.check_recognition();
   close(dice_.chance(0.5));
   sleep_until(now() + 100 * ms);
   if (!parameters_.device.one_way && !environment_.device.is_idle_and_silent(now()))

@@ -215,6 +215,17 @@ void invariant_checker::check_scan(const scan& found) {
   holes_ += last->index - first->index + 1 != static_cast<std::int64_t>(found.points.size());
 }
 
+void invariant_checker::check_recognition() {
+  if (lidar_ == nullptr) return;
+  const sim::device_options& device = parameters_->device;
+  const recognition known = lidar_->recognition();
+  if (known.model->word != device.model) fail("read as " + std::string(known.model->word));
+  if (device.one_way) return;
+  if (known.number != device.info.model) fail("the number is not known");
+  const bool is_reported = contradictions_of(known).find("reports the number") != std::string::npos;
+  if (is_reported != has_other_number(*parameters_)) fail("the number is reported wrongly");
+}
+
 /// `taken` points were read by next_points(); `all`: no more are there.
 void invariant_checker::check_taken(std::uint64_t taken, bool all) {
   const std::uint64_t known = taken + lidar_->counts().points_missed;

@@ -55,6 +55,8 @@ class invariant_checker {
   void check_stretch(std::span<const point> points, const char* whose);
   void check_scan(const scan& found);
   void check_taken(std::uint64_t taken, bool all);
+  /// It is read as what it is, and a number that contradicts this is reported.
+  void check_recognition();
 
   void fail(const std::string& what);
   [[nodiscard]] const std::string& failure() const { return failure_; }

@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: MIT
 // What was drawn for a G4 becomes what another model can be.
+#include <algorithm>
+#include <string_view>
+#include <vector>
+
 #include "g4lidar/core/model.hpp"
 #include "g4lidar/core/packet.hpp"
 #include "parameters.hpp"
@@ -28,6 +32,36 @@ void draw_additions(dice& d, sim::device_options& device) {
   device.scanner.index_deg = d.chance(0.5) ? device.scanner.index_deg : d.real(0.0, 359.9);
 }
 
+/// What owners have seen: an X2 and its like with other rates, an S2 that answers and has another rate.
+void draw_oddities(dice& d, std::string_view word, sim::device_options& device) {
+  if ((word == "x2" || word == "x2l" || word == "x3") && d.chance(0.5)) {
+    const auto rate_hz = static_cast<std::uint32_t>(d.between(2500, 3600));
+    device.scanner.format.rates_hz = {rate_hz, 0, 0};
+    device.scanner.sample_rate = static_cast<sample_rate>(rate_hz);
+    device.scanner.scan_frequency_chz = static_cast<std::uint16_t>(d.between(500, 1010));
+  }
+  if (word == "s4b" && d.chance(0.5)) {
+    device.baud = 150'000;
+    device.info.model = 12;
+  }
+}
+
+/// A number that no model has, or that of a model whose samples have another size: the user has named the right one.
+void draw_number(dice& d, sim::device_options& device) {
+  const std::size_t size = sample_size(model_named(device.model)->samples.layout);
+  std::vector<std::uint8_t> numbers{99, 153, 250};
+  for (const model& other : models) {
+    const auto is_alike = [&](const model& row) {
+      const bool has_it = std::ranges::find(row.ids, other.ids[0]) != row.ids.end();
+      return has_it && sample_size(row.samples.layout) == size;
+    };
+    if (std::ranges::none_of(models, is_alike)) numbers.push_back(other.ids[0]);
+  }
+  const auto last = static_cast<std::int64_t>(numbers.size()) - 1;
+  const auto drawn = static_cast<std::size_t>(d.between(0, last));
+  if (d.chance(0.4)) device.info.model = numbers[drawn];
+}
+
 /// Answers to D1 and 93. Without its answer the direction of zero is not known, so it is 0 where one may be lost.
 void draw_answers(dice& d, run_parameters& parameters) {
   sim::device_options& device = parameters.device;
@@ -45,6 +79,19 @@ void draw_answers(dice& d, run_parameters& parameters) {
 }
 
 }  // namespace
+
+bool has_other_number(const run_parameters& parameters) {
+  const auto& own = model_named(parameters.device.model)->ids;
+  return std::ranges::find(own, parameters.device.info.model) == own.end();
+}
+
+bool is_usual(const run_parameters& parameters, lidar_event::kind what) {
+  using kind = lidar_event::kind;
+  // A one-way lidar goes on when it was stopped.
+  if (what == kind::still_turning) return parameters.device.one_way;
+  if (what == kind::other_number) return has_other_number(parameters);
+  return what == kind::spinning_up;
+}
 
 void become(dice& d, std::string_view word, run_parameters& parameters) {
   sim::device_options& v = parameters.device;
@@ -73,6 +120,8 @@ void become(dice& d, std::string_view word, run_parameters& parameters) {
   }
   draw_additions(d, v);
   draw_answers(d, parameters);
+  draw_oddities(d, word, v);
+  if (!v.one_way) draw_number(d, v);
   parameters.bridge_baud = some_bridge_baud(d, v.baud);
 }
 

@@ -71,6 +71,11 @@ struct run_parameters {
 /// Makes of them those of the model of this name: what only a G4 has is left out.
 void become(dice& d, std::string_view model, run_parameters& parameters);
 
+/// Whether the device reports a number that its model has not.
+[[nodiscard]] bool has_other_number(const run_parameters& parameters);
+/// Whether nothing is wrong with the device where this is reported.
+[[nodiscard]] bool is_usual(const run_parameters& parameters, lidar_event::kind what);
+
 /// How long the device needs by itself for a whole revolution: boot, answers, spin-up, two turns.
 [[nodiscard]] std::int64_t own_time_ns(const run_parameters& parameters);
 /// A whole revolution is there so long after the last fault has ended.

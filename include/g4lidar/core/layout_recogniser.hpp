@@ -48,8 +48,15 @@ class layout_candidate {
   [[nodiscard]] constexpr const std::optional<ct_information>& information() const noexcept {
     return reader_.last();
   }
-  /// Samples per second, by the frequency that a zero packet reports; 0: not known.
-  [[nodiscard]] constexpr std::uint32_t rate_hz() const noexcept { return rate_hz_; }
+  /// Samples per second, by the frequency that a zero packet reports and the angle between samples; 0: not known.
+  [[nodiscard]] constexpr std::uint32_t rate_hz() const noexcept {
+    return span_64ths_ == 0 ? 0 : steps_ * turn_64ths * dhz_ / (10 * span_64ths_);
+  }
+  /// Whether nothing is missing that other packets might state: a revolution was received without a gap; or the rate is
+  /// known, and the CT bytes are all the same, so that they state nothing.
+  [[nodiscard]] constexpr bool has_stated_all() const noexcept {
+    return has_revolution_ || (rate_hz() != 0 && ct_or_ == ct_and_);
+  }
   /// Whether the second bit of 2-byte samples is seldom set: the lowest bits of a range have all
   /// values.
   [[nodiscard]] constexpr bool has_rare_upper_flag() const noexcept {
@@ -82,15 +89,20 @@ class layout_candidate {
 
   constexpr void take(packet_view packet) noexcept {
     reader_.add(packet);
+    const bool goes_on = is_in_revolution_ && gap_ <= 1;
+    is_in_revolution_ = packet.is_zero() || (is_in_revolution_ && gap_ == 0);
+    constexpr std::size_t exact = 8;  // samples, whose angles are rounded
     if (packet.is_zero()) {
-      if (is_in_revolution_ && gap_ <= 1 && dhz_ != 0) rate_hz_ = samples_ * dhz_ / 10;
+      has_revolution_ = has_revolution_ || goes_on;
       dhz_ = static_cast<std::uint32_t>(packet.reported_frequency_dhz());
-      is_in_revolution_ = true;
-      samples_ = 0;
-    } else if (gap_ > 0) {
-      is_in_revolution_ = false;
+    } else {
+      ct_or_ |= packet.ct();
+      ct_and_ &= packet.ct();
+      if (packet.sample_count() >= exact && packet.span_64ths() > 0) {
+        steps_ = static_cast<std::uint32_t>(packet.sample_count() - 1);
+        span_64ths_ = static_cast<std::uint32_t>(packet.span_64ths());
+      }
     }
-    samples_ += static_cast<std::uint32_t>(packet.sample_count());
     for (std::size_t i = 0; i < packet.sample_count(); ++i) {
       const std::uint16_t word = packet.sample(i);
       if (word > 3) ++ranges_;
@@ -107,9 +119,12 @@ class layout_candidate {
   bool is_open_ = false;  // the last one was a packet, and has no vote yet
   std::uint8_t id_ = 0;
   bool is_in_revolution_ = false;  // received from its zero packet on, without a gap
-  std::uint32_t dhz_ = 0;          // its frequency
-  std::uint32_t samples_ = 0;      // in it
-  std::uint32_t rate_hz_ = 0;
+  bool has_revolution_ = false;    // one was received until the next zero packet
+  std::uint8_t ct_or_ = 0;         // of all CT bytes but those of zero packets
+  std::uint8_t ct_and_ = 255;
+  std::uint32_t dhz_ = 0;          // the last frequency
+  std::uint32_t steps_ = 0;        // from the first sample of a packet to its last one,
+  std::uint32_t span_64ths_ = 0;   // and their angle
   std::uint32_t ranges_ = 0;       // samples that are not flags alone, and not 0
   std::uint32_t upper_flags_ = 0;  // of them
   std::uint32_t flags_alone_ = 0;
@@ -171,10 +186,16 @@ class layout_recogniser {
     const detail::layout_candidate* const sent = decided();
     return sent == nullptr ? std::nullopt : sent->information();
   }
-  /// Samples per second, by the frequency that a zero packet reports; 0: not known.
+  /// Samples per second, by the frequency that a zero packet reports and the angle between samples; 0: not known.
   [[nodiscard]] constexpr std::uint32_t rate_hz() const noexcept {
     const detail::layout_candidate* const sent = decided();
     return sent == nullptr ? 0 : sent->rate_hz();
+  }
+  /// Whether more packets will hardly show more about the model than those that have come. False as long as the size of a
+  /// sample is not decided.
+  [[nodiscard]] constexpr bool has_stated_all() const noexcept {
+    const detail::layout_candidate* const sent = decided();
+    return sent != nullptr && sent->has_stated_all();
   }
 
   /// The model as far as the bytes show it; the G4 as long as the size of a sample is not decided.

@@ -35,6 +35,7 @@ struct diagnostic_options {
   /// search() finds it; of a file what a recording states, or the raw bytes show, as
   /// model_of_source() finds it. Valid forever.
   const g4lidar::model* model = nullptr;
+  bool insist_on_model = false;  ///< As that of lidar_options: whatever number the lidar reports.
   bool probe_all_ports = false;  ///< As that of lidar_options, where the source has no name.
   /// How long to measure the running scan; a file is always read completely.
   std::chrono::nanoseconds measuring_time = std::chrono::seconds(5);

@@ -151,6 +151,7 @@ int examine(const doctor_options& options) {
   refuse_options_of_others(options);
   diagnostic_options how;
   how.baud = options.expected.baud;
+  how.insist_on_model = options.expected.insists;
   how.probe_all_ports = options.expected.all_ports;
   const source_kind kind = kind_of_source(options.source);
   std::optional<recognised_model> seen;
