@@ -80,7 +80,7 @@ lidar_search::found lidar_search::round(bool is_first) {
     if (!done || *done) return done;
   }
   // What sends at another rate makes bytes at this one, too; few are a late answer.
-  const bool is_silent = heard_.bytes < stream_bytes && !only_listens();
+  const bool is_silent = heard_.count() < stream_bytes && !only_listens();
   for (std::size_t i = has_fixed_rate_ || is_silent ? rates_.size() : 1; i < rates_.size(); ++i) {
     done = visit(rates_[i], listening_ns);
     if (!done || *done) return done;
@@ -116,6 +116,7 @@ lidar_search::found lidar_search::ask_the_others(std::int64_t wait_ns) {
 /// Whether the port has this rate now, as far as it has one.
 result<bool> lidar_search::tune(std::uint32_t baud) {
   heard_ = {};
+  device_.reset();
   if (std::ranges::find(tried_, baud) == tried_.end()) tried_.push_back(baud);
   const auto set = port_.set_baud(baud);
   if (!set) {
@@ -131,23 +132,24 @@ lidar_search::found lidar_search::visit(std::uint32_t baud, std::int64_t listen_
   if (!tuned) return tl::unexpected(tuned.error());
   if (!*tuned) return std::nullopt;
   const auto is_decided = [this] {
-    return heard_.stream.sample_bytes() != 0 || heard_.maker.found() != nullptr;
+    return heard_.layout().sample_bytes() != 0 || heard_.maker() != nullptr;
   };
   const auto is_enough = [&] { return is_decided() || is_hopeless(); };
   if (auto done = listen(in_ns(listen_ns), is_enough); !done) return tl::unexpected(done.error());
-  if (heard_.bytes > 0 && !is_enough()) {
+  if (heard_.count() > 0 && !is_enough()) {
     if (auto done = listen(in_ns(listening_ns), is_enough); !done) {
       return tl::unexpected(done.error());
     }
   }
-  if (heard_.stream.sample_bytes() != 0) return judge_stream();
-  if (!is_decided()) heard_.maker.finish();
-  if (const other_maker* const other = heard_.maker.found()) {
+  if (heard_.layout().sample_bytes() != 0) return judge_stream();
+  if (!is_decided()) heard_.finish();
+  if (const other_maker* const other = heard_.maker()) {
     return failure(task::asking, problem::other_device,
                    std::string(port_.name()).append(", ").append(other->product), 0,
                    error_detail::other_maker);
   }
-  if (heard_.bytes >= stream_bytes) ++sending_;
+  if (heard_.text() != text_kind::none) finding_ = heard_.finding();
+  if (heard_.count() >= stream_bytes) ++sending_;
   return std::nullopt;
 }
 
@@ -160,10 +162,10 @@ lidar_search::found lidar_search::question(std::uint32_t baud, std::int64_t wait
   all_heard_.sent(ask);
   const auto sent = port_.write(ask, port_.now_ns() + write_ns);
   if (!sent && sent.error() != problem::timeout) return tl::unexpected(sent.error());
-  const auto is_enough = [this] { return heard_.device || heard_.stream.sample_bytes() != 0; };
+  const auto is_enough = [this] { return device_ || heard_.layout().sample_bytes() != 0; };
   if (auto done = listen(in_ns(wait_ns), is_enough); !done) return tl::unexpected(done.error());
-  if (heard_.stream.sample_bytes() != 0) return judge_stream();
-  return heard_.device ? judge_reply() : found();
+  if (heard_.layout().sample_bytes() != 0) return judge_stream();
+  return device_ ? judge_reply() : found();
 }
 
 /// For a motor that DTR drives: it needs an edge.
@@ -189,26 +191,23 @@ lidar_search::found lidar_search::pulse() {
 }
 
 void lidar_search::take(bytes input) {
-  heard_.bytes += input.size();
-  heard_.maker.take(input);
   all_heard_.received(input);
-  heard_.stream.take(input);
-  heard_.replies.feed(input, [this](const event& each) {
-    const auto* const reply = std::get_if<response_view>(&each);
-    if (reply == nullptr || heard_.device) return;
-    heard_.device = reply->as_device_info();
-  });
+  heard_.received(input);
+  if (!device_) device_ = heard_.device();
 }
 
 bool lidar_search::is_hopeless() const noexcept {
-  return heard_.bytes >= hopeless_bytes && !heard_.stream.has_packet() && !heard_.device &&
-         !heard_.maker.is_likely();
+  return heard_.count() >= hopeless_bytes && !heard_.layout().has_packet() && !device_ &&
+         !heard_.is_other_likely();
 }
 
 tl::unexpected<error> lidar_search::not_found() const {
   std::string subject(port_.name());
   if (options_.model != nullptr) subject.append(", ").append(options_.model->name);
   if (options_.listen_only) subject.append(", only listened to");
+  if (!finding_.empty()) {
+    return failure(task::asking, problem::garbage, subject.append(": ").append(finding_));
+  }
   subject.append(all_heard_.text());
   if (tried_.size() > 1 || options_.baud != 0) {
     std::string_view before = all_heard_.count() > 0 ? ", at " : " at ";

@@ -9,11 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "g4lidar/core/layout_recogniser.hpp"
 #include "g4lidar/discovery.hpp"
 #include "model_choice.hpp"
-#include "survey/other_makers.hpp"
-#include "survey/unrecognised_bytes.hpp"
+#include "survey/stream_survey.hpp"
 
 namespace g4lidar {
 
@@ -41,16 +39,6 @@ class lidar_search {
       50'000'000;  // between two questions whether it is cancelled
 
   using found = result<std::optional<recognised_lidar>>;
-
-  /// What arrived at one rate.
-  struct hearing {
-    layout_recogniser stream;
-    stream_parser replies =
-        stream_parser(g4_format);  // a response is found whatever the size of samples is
-    std::optional<device_information> device;
-    maker_recogniser maker;
-    std::size_t bytes = 0;
-  };
 
   [[nodiscard]] result<recognised_lidar> find(std::int64_t deadline_ns);
   [[nodiscard]] found round(bool is_first);
@@ -92,8 +80,10 @@ class lidar_search {
   bool has_fixed_rate_ = false;
   bool has_pulsed_ = false;
   std::size_t sending_ = 0;  // rates at which something sends
-  hearing heard_;
+  stream_survey heard_;      // at this rate
+  std::optional<device_information> device_;
   unrecognised_bytes all_heard_;
+  std::string finding_;  // what sends something else at a rate
 };
 
 template <class Enough>

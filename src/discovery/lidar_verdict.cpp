@@ -35,11 +35,11 @@ std::vector<const model*> models_of_size(std::size_t sample_bytes, presence answ
 lidar_signs lidar_search::signs() const noexcept {
   lidar_signs all;
   all.baud = port_.baud();
-  all.is_baud_certain = !has_fixed_rate_ || (options_.baud != 0 && heard_.device);
-  all.sample_bytes = heard_.stream.sample_bytes();
-  all.sample_rate_hz = heard_.stream.rate_hz();
-  if (heard_.device) all.id = heard_.device->model;
-  if (const auto stated = heard_.stream.information()) all.ct_id_low_bits = stated->id_low_bits;
+  all.is_baud_certain = !has_fixed_rate_ || (options_.baud != 0 && device_);
+  all.sample_bytes = heard_.layout().sample_bytes();
+  all.sample_rate_hz = heard_.layout().rate_hz();
+  if (device_) all.id = device_->model;
+  if (const auto stated = heard_.layout().information()) all.ct_id_low_bits = stated->id_low_bits;
   return all;
 }
 
@@ -55,9 +55,9 @@ recognised_lidar lidar_search::made(std::vector<const model*> candidates,
                                        : known_by::samples;
   lidar.is_silent = !options_.listen_only && of.answers == presence::no &&
                     lidar.model->link == link_kind::two_way;
-  if (heard_.device) {
-    lidar.device = *heard_.device;
-  } else if (const auto stated = heard_.stream.information()) {
+  if (device_) {
+    lidar.device = *device_;
+  } else if (const auto stated = heard_.layout().information()) {
     lidar.device = information_of(*stated, *lidar.model);
   }
   lidar.candidates = std::move(candidates);
@@ -69,7 +69,7 @@ lidar_search::found lidar_search::judge_stream() {
   if (only_listens()) return judge_named();
   // Few more packets may have to contradict what the device answers.
   const auto is_counted = [this] {
-    return heard_.stream.votes(heard_.stream.sample_bytes()) >= certain_packets;
+    return heard_.layout().votes(heard_.layout().sample_bytes()) >= certain_packets;
   };
   if (auto done = listen(in_ns(certain_ns), is_counted); !done) return tl::unexpected(done.error());
   const std::int64_t informed_ns = in_ns(information_ns);
@@ -78,7 +78,7 @@ lidar_search::found lidar_search::judge_stream() {
   // A one-way lidar is not to be disturbed: its CT bytes or its sample rate may be sufficient.
   if (is_doubtful) {
     const auto is_certain = [this] {
-      return heard_.stream.has_stated_all() || !may_be_two_way(signs());
+      return heard_.layout().has_stated_all() || !may_be_two_way(signs());
     };
     if (auto done = listen(informed_ns, is_certain); !done) return tl::unexpected(done.error());
   }
@@ -86,17 +86,17 @@ lidar_search::found lidar_search::judge_stream() {
   if (may_be_two_way(known)) {
     const auto fitting = models_that_fit(known);
     const auto like = std::ranges::find_if_not(fitting, is_one_way);
-    const std::optional<device_information> announced = std::exchange(heard_.device, std::nullopt);
+    const std::optional<device_information> announced = std::exchange(device_, std::nullopt);
     auto device = stop_and_ask(**like, is_doubtful ? stop_attempts::one : stop_attempts::several);
     if (!device) return tl::unexpected(device.error());
     if (*device) {
       // NOLINTNEXTLINE(bugprone-unchecked-optional-access): checked before
-      heard_.device = **device;
+      device_ = **device;
       known.answers = presence::yes;
-      known.id = heard_.device->model;
+      known.id = device_->model;
       return judge_number(known);
     }
-    heard_.device = announced;
+    device_ = announced;
   }
   return judge_silent(known, is_doubtful ? informed_ns : in_ns(information_ns));
 }
@@ -128,17 +128,17 @@ lidar_search::found lidar_search::judge_named() {
 lidar_search::found lidar_search::judge_silent(lidar_signs known, std::int64_t until_ns) {
   known.answers = presence::no;
   if (!models_that_fit(known).empty()) {
-    const auto is_informed = [this] { return heard_.stream.has_stated_all(); };
+    const auto is_informed = [this] { return heard_.layout().has_stated_all(); };
     if (auto done = listen(until_ns, is_informed); !done) return tl::unexpected(done.error());
     known = signs();
     known.answers = presence::no;
     auto silent = models_that_fit(known);
     if (!silent.empty()) return made(std::move(silent), known);
   } else {
-    heard_.stream = {};  // bytes are missing since the stop
-    const auto has_rate = [this] { return heard_.stream.rate_hz() != 0; };
+    heard_.part();  // bytes are missing since the stop
+    const auto has_rate = [this] { return heard_.layout().rate_hz() != 0; };
     if (auto done = listen(until_ns, has_rate); !done) return tl::unexpected(done.error());
-    known.sample_rate_hz = heard_.stream.rate_hz();
+    known.sample_rate_hz = heard_.layout().rate_hz();
   }
   lidar_signs any = known;
   any.answers = presence::yes;  // if it were heard
@@ -165,7 +165,7 @@ lidar_search::found lidar_search::judge_number(lidar_signs known) {
     return tl::unexpected(refused(port_, product));
   auto fitting = models_that_fit(known);
   if (!fitting.empty()) return made(std::move(fitting), known);
-  const bool is_certain = heard_.stream.votes(known.sample_bytes) >= certain_packets;
+  const bool is_certain = heard_.layout().votes(known.sample_bytes) >= certain_packets;
   if (known.sample_bytes != 0 && !is_certain) {
     lidar_signs without = known;
     without.sample_bytes = 0;
@@ -185,7 +185,7 @@ lidar_search::found lidar_search::judge_reply() {
   known.answers = presence::no;
   const auto may_announce = [&](const model* row) { return has_rate(*row, port_.baud()); };
   if (std::ranges::any_of(models_that_fit(known), may_announce)) {
-    const auto is_stream = [this] { return heard_.stream.sample_bytes() != 0; };
+    const auto is_stream = [this] { return heard_.layout().sample_bytes() != 0; };
     if (auto done = listen(in_ns(announcement_ns), is_stream); !done) {
       return tl::unexpected(done.error());
     }

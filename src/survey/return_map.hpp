@@ -34,11 +34,12 @@ class return_map {
   [[nodiscard]] std::uint64_t returns() const noexcept { return returns_; }
   /// Whether it has looked in each direction.
   [[nodiscard]] bool is_round() const noexcept;
-  /// The arcs of at least `least_deg` degrees in which it has looked at least three times in each direction, and
-  /// nothing came back. Returns are counted one degree wider on both sides. One arc of 360 degrees if nothing
+  /// The arcs of at least `least_deg` degrees in which it has looked at least three times in each direction, a thinned
+  /// one twice, and nothing came back. Returns are counted one degree wider on both sides. One arc of 360 degrees if nothing
   /// came back at all. `is_wanted`: whether a direction, the middle of a degree, counts. Allocates.
   template <class Wanted>
   [[nodiscard]] std::vector<direction_arc> without_return(int least_deg, Wanted is_wanted) const {
+    const std::uint32_t enough_looks = is_thinned_ ? 2 : 3;
     std::array<bool, full_turn_deg> is_silent{};
     for (std::size_t at = 0; at < is_silent.size(); ++at) {
       is_silent[at] = looks_[at] >= enough_looks && returned_[at] == 0 &&
@@ -51,7 +52,6 @@ class return_map {
   static constexpr int full_turn_deg = 360;
   using degree_counts = std::array<std::uint32_t, full_turn_deg>;
 
-  static constexpr std::uint32_t enough_looks = 3;
   [[nodiscard]] static std::vector<direction_arc> arcs_of(
       const std::array<bool, full_turn_deg>& is_silent, int least_deg);
 

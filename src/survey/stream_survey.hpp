@@ -2,9 +2,14 @@
 // The examination of the bytes of a stream: facts that the search, the doctor and the errors read.
 #pragma once
 
+#include <cstddef>
+#include <optional>
 #include <string>
+#include <variant>
 
 #include "g4lidar/core/layout_recogniser.hpp"
+#include "g4lidar/core/stream_parser.hpp"
+#include "g4lidar/device_information.hpp"
 #include "other_makers.hpp"
 #include "text_signs.hpp"
 #include "unrecognised_bytes.hpp"
@@ -17,9 +22,14 @@ class stream_survey {
   void sent(bytes command) noexcept { all_.sent(command); }
   void received(bytes data) noexcept {
     all_.received(data);
+    count_ += data.size();
     layout_.take(data);
     maker_.take(data);
     text_.take(data);
+    answers_.feed(data, [this](const event& each) {
+      const auto* const reply = std::get_if<response_view>(&each);
+      if (reply != nullptr && !device_) device_ = reply->as_device_info();
+    });
   }
   /// The input has ended.
   void finish() noexcept {
@@ -30,12 +40,21 @@ class stream_survey {
   void part() noexcept {
     layout_ = {};
     maker_ = {};
+    answers_ = stream_parser(g4_format);
+    device_.reset();
+    count_ = 0;
   }
 
   /// Packets of which layout; since part().
   [[nodiscard]] const layout_recogniser& layout() const noexcept { return layout_; }
   /// Who sends frames of another protocol; null: nobody is recognised. Valid forever.
   [[nodiscard]] const other_maker* maker() const noexcept { return maker_.found(); }
+  /// Whether frames of somebody else have come, too few to recognise him.
+  [[nodiscard]] bool is_other_likely() const noexcept { return maker_.is_likely(); }
+  /// The first answer with a device information; since part().
+  [[nodiscard]] const std::optional<device_information>& device() const noexcept { return device_; }
+  /// How many bytes; since part().
+  [[nodiscard]] std::size_t count() const noexcept { return count_; }
   /// All bytes, whether they are text, and how they were changed on the way.
   [[nodiscard]] const unrecognised_bytes& all() const noexcept { return all_; }
   [[nodiscard]] text_kind text() const noexcept { return text_.text(); }
@@ -48,6 +67,9 @@ class stream_survey {
   maker_recogniser maker_;
   text_signs text_;
   unrecognised_bytes all_;
+  stream_parser answers_{g4_format};  // an answer is found whatever the size of samples is
+  std::optional<device_information> device_;
+  std::size_t count_ = 0;
 };
 
 }  // namespace g4lidar

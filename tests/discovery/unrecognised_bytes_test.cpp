@@ -25,7 +25,7 @@ using ::testing::HasSubstr;
 using octets = std::vector<std::uint8_t>;
 
 /// Answers the command 90 with these bytes, or everything with itself; in virtual time.
-class answering_port final : public transport {
+class answering_port : public transport {
  public:
   using clock = std::shared_ptr<std::int64_t>;
   explicit answering_port(octets answer, clock now = std::make_shared<std::int64_t>(1))
@@ -138,6 +138,35 @@ TEST_P(BytesWithoutMeaning, DoctorReportsThem) {
 
 INSTANTIATE_TEST_SUITE_P(Kinds, BytesWithoutMeaning, testing::ValuesIn(samples()),
                          [](const auto& of) { return std::string(of.param.name); });
+
+/// Sends text at 115200 baud, which is noise at any other rate.
+class text_port final : public answering_port {
+ public:
+  text_port() : answering_port(octets{0}) {}
+
+  result<received> read(std::span<std::uint8_t> out,
+                        std::int64_t /*deadline_ns*/) noexcept override {
+    constexpr std::string_view text = "temperature 21.5\r\n";
+    for (std::uint8_t& each : out.first(32)) {
+      const std::size_t at = sent_++;
+      each = baud() == 115'200 ? static_cast<std::uint8_t>(text[at % text.size()])
+                               : static_cast<std::uint8_t>(0x80U | at * 37U);
+    }
+    static_cast<void>(pause(now_ns() + 3'000'000));
+    return received{32, now_ns()};
+  }
+
+ private:
+  std::size_t sent_ = 0;
+};
+
+TEST(UnrecognisedBytes, OfText_AreNamed) {
+  text_port port;
+  const auto found = search(port, port.now_ns() + 3'000'000'000, {});
+  ASSERT_FALSE(found);
+  EXPECT_EQ(found.error(), problem::garbage) << found.error().message();
+  EXPECT_THAT(found.error().message(), HasSubstr("This is text, not the packets of a lidar"));
+}
 
 TEST(UnrecognisedBytes, AreCountedAndShownShortly) {
   unrecognised_bytes heard;

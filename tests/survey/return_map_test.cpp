@@ -41,15 +41,20 @@ std::vector<std::uint8_t> packet(double first_deg, double last_deg,
 }
 
 /// Some turns of 720 samples, in packets of 40; `range_mm` of the direction in which the device looks, 0: no return.
-return_map turns(int count, const model& of, const std::function<double(double)>& range_mm) {
-  return_map seen;
+return_map turns(int count, const model& of, const std::function<double(double)>& range_mm,
+                 bool is_thinned = false) {
+  return_map seen(is_thinned);
   for (int turn = 0; turn < count; ++turn) {
     for (int from = 0; from < 720; from += 40) {
       std::vector<std::uint16_t> samples;
       for (int i = 0; i < 40; ++i) {
         samples.push_back(static_cast<std::uint16_t>(range_mm((from + i) * 0.5) * 4.0));
       }
-      const auto all = packet(from * 0.5, (from + 39) * 0.5, samples);
+      auto all = packet(from * 0.5, (from + 39) * 0.5, samples);
+      if (from == 0) {
+        all[2] = 1;    // CT: a zero packet
+        all[8] ^= 1U;  // its place in the checksum
+      }
       const auto view = packet_view::from(bytes(all), of.samples);
       EXPECT_TRUE(view.has_value());
       if (view) seen.take(*view, of.samples);
@@ -125,7 +130,7 @@ TEST(ReturnMap, TwoCanBeAdded) {
   EXPECT_NEAR(arcs[0].from_deg, 195, 2);
 }
 
-// The first two revolutions, and the sixteenth.
+// The first revolution, and the sixty-fourth.
 TEST(ReturnMap, AThinnedOneLooksNowAndThen) {
   const auto zero = packet(0, 0, {8000});
   std::vector<std::uint8_t> begin = zero;
@@ -138,6 +143,18 @@ TEST(ReturnMap, AThinnedOneLooksNowAndThen) {
     seen.take(*view, g4_format);
   }
   EXPECT_EQ(seen.samples(), 2U);
+}
+
+// As of a window: the stretch that ended, and the one that has begun.
+TEST(ReturnMap, TwoThinnedOnesShowTheWholeArc) {
+  const auto range_mm = [](double deg) { return deg >= 120 && deg < 240 ? 0.0 : 2000.0; };
+  auto all = turns(35, g4_model, range_mm, true);
+  EXPECT_THAT(arcs_in(all, 30), IsEmpty()) << "one revolution is too few";
+  all.add(turns(2, g4_model, range_mm, true));
+  const auto arcs = arcs_in(all, 30);
+  ASSERT_EQ(arcs.size(), 1U);
+  EXPECT_NEAR(arcs[0].from_deg, 114.5, 1.5);
+  EXPECT_NEAR(arcs[0].from_deg + arcs[0].width_deg, 230.5, 1.5);
 }
 
 TEST(ReturnMap, DirectionsThatNobodyWantsAreNoArc) {
