@@ -64,8 +64,15 @@ constexpr std::array rows{
         "and without flow control; transfer files as binary. Over a slow network bytes may be "
         "lost: use a better connection.",
         {line_noise, bytes_dropped}),
-    row("wrong_baud_rate", fail, "Bytes arrive, but they make no sense at this baud rate.",
+    row("unknown_bytes", fail,
+        "Bytes arrive that are of no known kind: of another device, at a baud rate that was not "
+        "tried, or damaged.",
         problem::garbage, {other_device, interference, line_noise}),
+    row("wrong_baud_rate", fail, "Bytes arrive, but they make no sense at this baud rate.",
+        "Give the baud rate of the lidar, or none: then all rates are tried. Set a network bridge "
+        "to "
+        "the rate of the lidar.",
+        {other_device, interference, line_noise}),
     row("silent", fail,
         "Nothing arrives, whatever is sent. Most likely the lidar has no power, or is not attached "
         "to this port.",
@@ -215,7 +222,7 @@ diagnosis diagnosis_of(problem what) noexcept {
 
 std::optional<diagnosis> diagnosis_of(const stream_counts& counts, std::uint64_t size) noexcept {
   if (size == 0) return bad_file;
-  if (counts.packets + counts.responses == 0) return wrong_baud_rate;
+  if (counts.packets + counts.responses == 0) return unknown_bytes;
   if (counts.packets > 0 && counts.skipped_bytes() > size / 2) return line_noise;
   return std::nullopt;
 }

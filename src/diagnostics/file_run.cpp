@@ -170,9 +170,7 @@ class file_run {
     }
     const auto found = diagnosis_of(counts, measured_.tally().arrivals.bytes());
     if (found) baud.find(*found);
-    if (found == diagnosis::wrong_baud_rate) {
-      baud.remark = "It is also possible that these bytes are not those of a lidar.";
-    }
+    if (found == diagnosis::unknown_bytes) baud.remark = arrived(survey_);
     log_.report(std::move(baud));
     if (counts.packets > 0 && has_request(model_, request_kind::zero_angle) && !device_.zero) {
       stage_report answers{.stage = diagnostic_stage::answers};

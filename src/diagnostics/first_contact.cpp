@@ -24,12 +24,6 @@ constexpr std::size_t attempts = 3;
 /// Packets arrive more often.
 constexpr std::int64_t silent_ns = 200 * ms;
 constexpr std::int64_t search_ns = 3'000 * ms;
-/// "25 bytes like an answer of another length (A5 5A 15 00 00 00) arrived."
-std::string arrived(const stream_survey& heard) {
-  const std::string text(heard.all().text());
-  return text.empty() ? text : text.substr(text.find_first_not_of(", ")) + " arrived.";
-}
-
 /// Answers to 90, of which most decide the model.
 constexpr int more_identities = 4;
 
@@ -63,7 +57,7 @@ first_contact::state first_contact::make(stage_report& baud) {
     baud.add("bytes_of_no_packet", garbage_);
     if (!find_other_source(baud, link.survey()) &&
         !find_other_layout(baud, link.layout(), *lidar.which)) {
-      baud.find(diagnosis::wrong_baud_rate);
+      baud.find(diagnosis::unknown_bytes);
       if (!tried_.empty()) baud.remark = "No packet at any rate that was tried: " + tried_ + ".";
       if (baud.remark.empty()) baud.remark = arrived(link.survey());
     }

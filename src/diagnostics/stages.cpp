@@ -203,6 +203,11 @@ void report_loss(stage_log& log, const stream_statistics& measured, const model&
   log.report(std::move(loss));
 }
 
+std::string arrived(const stream_survey& heard) {
+  const std::string text(heard.all().text());
+  return text.empty() ? text : text.substr(text.find_first_not_of(", ")) + " arrived.";
+}
+
 bool find_other_source(stage_report& report, const stream_survey& seen) {
   std::string finding = seen.finding();
   if (finding.empty()) return false;

@@ -266,7 +266,7 @@ TEST_F(Convert, ImpossibleConversions_AreRefused) {
 
 TEST_F(Convert, FilesWithoutUsableData_AreRefused) {
   cli::write_file(path("empty.bin"), "");
-  cli::write_file(path("text.bin"), "dear\n");
+  cli::write_file(path("text.bin"), "dear reader of this file\n");
   cli::write_file(path("text.csv"), "dear\nfriend\n");
   cli::write_file(path("names.csv"), "scan,angle_deg,range_mm,time_ns\n");
   cli::write_file(path("text.jsonl"), "{}\n");

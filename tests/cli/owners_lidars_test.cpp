@@ -94,7 +94,7 @@ TEST_F(OwnersLidar, ThatWaitsForCommandsIsSilentWhereItIsOnlyListenedTo) {
   ASSERT_EQ(run({"record", "-n", "1", "sim:", "-o", path("walk.mcap")}).code, 0);
   const outcome file = run({"scan", "--listen", path("walk.mcap")});
   EXPECT_EQ(file.code, 2);
-  EXPECT_THAT(file.err, HasSubstr("listen_only"));
+  EXPECT_THAT(file.err, HasSubstr("--listen"));
 }
 
 TEST_F(OwnersLidar, TheUserMayInsistOnTheModel) {

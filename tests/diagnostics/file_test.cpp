@@ -132,7 +132,7 @@ TEST(Bytes, OfAnotherMakerAreNamed) {
 }
 
 TEST(Bytes, OfAnotherRateOrModelAreFound) {
-  EXPECT_EQ(in_file(bytes_of({"baud", "scanning"}, 3)).diagnoses(), "wrong_baud_rate");
+  EXPECT_EQ(in_file(bytes_of({"baud", "scanning"}, 3)).diagnoses(), "unknown_bytes");
   sim::device_options options;
   options.info.model = 4;
   EXPECT_EQ(in_file(bytes_of({}, 3, options), &g4_model).diagnoses(), "other_device");
@@ -259,7 +259,7 @@ TEST(Bytes, AreDiagnosedByTheirCounts) {
   stream_counts counts;
   EXPECT_EQ(diagnosis_of(counts, 0), diagnosis::bad_file);
   counts.skipped_by_reason = {300, 200, 400, 100};
-  EXPECT_EQ(diagnosis_of(counts, 1000), diagnosis::wrong_baud_rate);
+  EXPECT_EQ(diagnosis_of(counts, 1000), diagnosis::unknown_bytes);
   counts.responses = 1;
   EXPECT_EQ(diagnosis_of(counts, 1020), std::nullopt) << "the lidar was not scanning";
   counts.packets = 1;

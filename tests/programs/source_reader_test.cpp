@@ -34,7 +34,7 @@ class SourceReader : public cli::scratch {
                   const std::string& text) {
     common_options options;
     options.source = source;
-    options.on_loss = on_loss;
+    options.on_loss.usual = on_loss;
     source_reader made(options, {}, listener_);
     made.start();
     ASSERT_TRUE(comes_true([&] { return made.failure() != nullptr; }));

@@ -55,6 +55,7 @@ enum class diagnosis : std::uint8_t {
   interference,
   bad_baud_rate,
   changed_bytes,
+  unknown_bytes,
   wrong_baud_rate,
   silent,
   deaf,
@@ -116,7 +117,7 @@ struct diagnosis_info {
 /// The diagnosis for an error that ended a connection, or prevented it from being opened.
 [[nodiscard]] G4LIDAR_API diagnosis diagnosis_of(problem what) noexcept;
 /// The diagnosis for `size` raw bytes, such as a file, in which a stream_counter counted `counts`:
-/// bad_file if there are none; wrong_baud_rate if they contain no packet and no response; line_noise
+/// bad_file if there are none; unknown_bytes if they contain no packet and no response; line_noise
 /// if they contain packets, but more than half of them belong to none. Nothing if there is no fault:
 /// bytes with responses only are those of a lidar that was not scanning.
 [[nodiscard]] G4LIDAR_API std::optional<diagnosis> diagnosis_of(const stream_counts& counts,

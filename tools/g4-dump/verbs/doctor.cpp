@@ -97,7 +97,7 @@ nlohmann::ordered_json json_of_report(const stage_report& report) {
 
 /// For all other diagnoses the exit code is unhealthy.
 using failure_code = std::pair<diagnosis, exit_code>;
-constexpr std::array<failure_code, 16> failure_codes{{
+constexpr std::array<failure_code, 17> failure_codes{{
     {diagnosis::no_port, exit_code::no_device},
     {diagnosis::several_ports, exit_code::no_device},
     {diagnosis::not_serial, exit_code::no_device},
@@ -108,6 +108,7 @@ constexpr std::array<failure_code, 16> failure_codes{{
     {diagnosis::busy, exit_code::busy},
     {diagnosis::interference, exit_code::busy},
     {diagnosis::bad_baud_rate, exit_code::silent},
+    {diagnosis::unknown_bytes, exit_code::silent},
     {diagnosis::wrong_baud_rate, exit_code::silent},
     {diagnosis::silent, exit_code::silent},
     {diagnosis::other_device, exit_code::not_a_g4},

@@ -249,7 +249,7 @@ std::string why_no_packet(const stream_counts& counts, std::uint64_t bytes,
         "and jsonl.",
         text, known);
   }
-  if (found == diagnosis::wrong_baud_rate) {
+  if (found == diagnosis::unknown_bytes) {
     return fmt::format("{}. {} Give raw bytes from the lidar's port.", text, baud_question());
   }
   if (2 * counts.skipped(skip_reason::bad_checksum) > bytes) {
