@@ -146,7 +146,7 @@ struct find_options {
   /// true for, and not to those that a process has open, as far as this user sees it.
   bool probe_all_ports = false;
   std::uint32_t baud = 0;                         ///< 0: all that lidars have.
-  std::chrono::milliseconds probe_timeout{3000};  ///< For each port.
+  std::chrono::milliseconds probe_timeout{4000};  ///< For each port.
 };
 
 /// Every lidar that answers or sends, ordered by path. Opens the ports one after the other and restores their

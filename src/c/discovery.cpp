@@ -32,7 +32,7 @@ struct g4lidar_port_monitor {
 namespace {
 
 constexpr g4lidar_find_options find_defaults{
-    sizeof(g4lidar_find_options), 0, 3000, false, false, {}};
+    sizeof(g4lidar_find_options), 0, 4000, false, false, {}};
 
 g4lidar_port view_of(const port_info& from) noexcept {
   g4lidar_port made{};

@@ -12,17 +12,13 @@
 namespace g4lidar {
 namespace {
 
-/// The time of observation before anything is sent.
-constexpr std::int64_t unasked_ns = 300 * ms;
-/// A one-way lidar whose motor spins up sends its first packet by then.
-constexpr std::int64_t unasked_one_way_ns = 1'500 * ms;
 /// The wait for the first reply, for each attempt: a device may be booting, and a reply may be
 /// late. Then attempts if the bytes contained no packets or responses: they may have been noise.
 constexpr std::array<std::int64_t, 8> patiences_ns{800 * ms, 800 * ms, 3'000 * ms, 300 * ms,
                                                    300 * ms, 300 * ms, 300 * ms,   300 * ms};
 constexpr std::size_t attempts = 3;
-/// Packets arrive more often.
-constexpr std::int64_t silent_ns = 200 * ms;
+/// Of a query that was repeated.
+constexpr std::int64_t late_answer_ns = 400 * ms;
 constexpr std::int64_t search_ns = 3'000 * ms;
 /// Answers to 90, of which most decide the model.
 constexpr int more_identities = 4;
@@ -32,88 +28,40 @@ constexpr int more_identities = 4;
 first_contact::state first_contact::make(stage_report& baud) {
   link_monitor& link = of_.link;
   examined_lidar& lidar = of_.lidar;
-  const bool is_met = lidar.is_one_way() ? hear_stream() : make_quiet() && ask(0, 1);
-  if (is_met || link.is_over()) return is_met ? state::made : state::none;
-  const bool is_noise = garbage_ > 0;
-  // A device that has written its boot text and nothing more boots. Other bytes may look like a text.
-  const bool is_booting = link.boots() > 0 && link.now_ns() > link.heard_ns() + silent_ns;
-  state found = state::none;
-  if (!is_booting) {
-    found = search(baud);
-    if (found == state::refused || link.is_over()) return found;
-    if (found == state::made && lidar.is_one_way()) return found;
-  }
-  if (lidar.is_deaf) return state::made;
-  if (!lidar.is_one_way()) {
-    const std::size_t end = is_noise || garbage_ > 0 ? patiences_ns.size() : attempts;
-    if (ask(is_noise ? 0 : 1, end) || lidar.was_scanning) return state::made;
+  const state found = search(baud);
+  if (found == state::refused || link.is_over() || lidar.is_deaf) return found;
+  if (lidar.is_one_way()) return found == state::none ? unknown(baud) : found;
+  const stream_counts& heard = link.searched().counts;
+  const bool is_lidar =
+      lidar.takes_commands() || link.boots() > 0 || heard.responses + heard.packets > 0;
+  if (is_lidar || garbage_ == 0) {  // else it may be another device
+    if (ask()) return state::made;
     const bool is_there = found == state::made || garbage_ == 0;
     if (is_there && lidar.takes_commands() && !link.is_over() && scans_when_started()) {
       of_.answers.find(diagnosis::answers_missing);
       return state::made;
     }
   }
-  if (garbage_ > 0 && !link.is_over()) {
-    baud.add("bytes_of_no_packet", garbage_);
-    if (!find_other_source(baud, link.survey()) &&
-        !find_other_layout(baud, link.layout(), *lidar.which)) {
-      baud.find(diagnosis::unknown_bytes);
-      if (!tried_.empty()) baud.remark = "No packet at any rate that was tried: " + tried_ + ".";
-      if (baud.remark.empty()) baud.remark = arrived(link.survey());
-    }
+  return unknown(baud);
+}
+
+/// The diagnosis of bytes that are none of a lidar.
+first_contact::state first_contact::unknown(stage_report& baud) {
+  link_monitor& link = of_.link;
+  if (garbage_ == 0 || link.is_over()) return state::none;
+  baud.add("bytes_of_no_packet", garbage_);
+  if (!find_other_source(baud, link.survey()) &&
+      !find_other_layout(baud, link.layout(), *of_.lidar.which)) {
+    baud.find(diagnosis::unknown_bytes);
+    if (!tried_.empty()) baud.remark = "No packet at any rate that was tried: " + tried_ + ".";
+    if (baud.remark.empty()) baud.remark = arrived(link.survey());
   }
   return state::none;
 }
 
-/// Whether packets of the one-way lidar arrive that was named.
-bool first_contact::hear_stream() {
-  link_monitor& link = of_.link;
-  of_.log.begin(diagnostic_activity::listening);
-  if (of_.lidar.is_driven_by_dtr()) static_cast<void>(link.port().set_dtr(true));
-  const std::int64_t until_ns = link.now_ns() + unasked_one_way_ns;
-  while (!link.is_over() && link.now_ns() < until_ns && link.layout().sample_bytes() == 0) {
-    link.listen_for(longest_read_ns);
-  }
-  const std::size_t size = link.layout().sample_bytes();
-  if (size == 0) garbage_ = link.counts().skipped_bytes();
-  return size == sample_size(of_.lidar.which->samples.layout);
-}
-
-/// Whether the packets that were recognised cannot be those of a one-way lidar.
-bool first_contact::is_of_two_way() const {
-  const layout_recogniser& seen = of_.link.layout();
-  const auto fitting = models_that_fit({.baud = of_.link.port().baud(),
-                                        .is_baud_certain = of_.lidar.has_baud,
-                                        .sample_bytes = seen.sample_bytes(),
-                                        .sample_rate_hz = seen.rate_hz()});
-  return seen.sample_bytes() != 0 && std::ranges::none_of(fitting, [](const model* row) {
-           return row->link == link_kind::one_way;
-         });
-}
-
 bool first_contact::make_quiet() {
-  link_monitor& link = of_.link;
-  of_.log.begin(diagnostic_activity::listening);
-  link.listen_for(unasked_ns);
-  if (link.counts().packets > 0 && link.layout().sample_bytes() == 0) link.listen_for(unasked_ns);
-  const bool is_recognised = link.layout().sample_bytes() != 0;
-  const bool has_packets = is_recognised || link.counts().packets > 0;
-  const std::uint64_t skipped = link.counts().skipped_bytes();
-  of_.lidar.is_met = of_.lidar.is_met || is_of_two_way();
-  if (!of_.lidar.is_named && is_recognised) link.read_as(link.layout().most_likely());
-  const std::uint64_t unasked = link.counts().packets;
-  if (!has_packets && link.boots() == 0 && skipped > 0 && !of_.lidar.is_named) {
-    garbage_ += skipped;
-    return false;  // nothing is sent to what may be another device
-  }
-  if (!of_.lidar.takes_commands()) return !has_packets;
-  const bool is_quiet = !link.is_over() && link.stop();
-  const stream_counts& now = link.counts();
-  if (has_packets || now.packets > 0) of_.lidar.was_scanning = true;
-  if (!of_.lidar.was_scanning && link.boots() == 0) garbage_ += now.skipped_bytes();
-  if (is_quiet || link.is_over()) return is_quiet;
-  of_.lidar.is_deaf = now.packets > unasked;
-  return false;
+  of_.lidar.was_scanning = true;
+  return !of_.link.is_over() && of_.link.stop();
 }
 
 void first_contact::report_scanning() {
@@ -122,9 +70,10 @@ void first_contact::report_scanning() {
   if (of_.lidar.is_deaf) of_.answers.find(diagnosis::deaf);
 }
 
-bool first_contact::ask(std::size_t from, std::size_t to) {
+bool first_contact::ask() {
   of_.log.begin(diagnostic_activity::asking);
-  for (std::size_t i = from; i < to && !of_.link.is_over(); ++i) {
+  for (std::size_t i = 0; i < patiences_ns.size() && !of_.link.is_over(); ++i) {
+    if (i >= attempts && garbage_ == 0) return false;
     exchange made = of_.link.ask(command::device_info, patiences_ns.at(i));
     if (asked_ns_ < 0) asked_ns_ = made.asked_ns;
     if (made.is_answered() || made.wrong > 0) {
@@ -189,18 +138,14 @@ bool first_contact::recognise(const exchange& first) {
   if (!who) return true;
   const std::uint32_t baud = of_.link.port().baud();
   if (lidar.is_named) return !refuses_number(of_.log.options(), *lidar.which, who->model, baud);
-  const bool is_other_product = !other_product(who->model).empty();
-  lidar_signs known{.baud = baud,
-                    .is_baud_certain = lidar.has_baud,
-                    .sample_bytes = of_.link.layout().sample_bytes(),
-                    .id = who->model,
-                    .answers = presence::yes};
-  lidar.candidates = models_that_fit(known);
-  if (lidar.candidates.empty() && !is_other_product) {  // its samples decide
-    known.id = 0;
-    lidar.candidates = models_that_fit(known);
-  }
-  if (!lidar.candidates.empty()) lidar.which = lidar.candidates.front();
+  const std::size_t seen = lidar.was_scanning ? sample_size(lidar.which->samples.layout) : 0;
+  lidar.candidates = models_of_answer({.baud = baud,
+                                       .is_baud_certain = lidar.has_baud,
+                                       .sample_bytes = seen,
+                                       .id = who->model,
+                                       .answers = presence::yes},
+                                      true);
+  lidar.which = lidar.candidates.front();
   of_.link.read_as(*lidar.which);
   return true;
 }
@@ -212,11 +157,18 @@ first_contact::state first_contact::search(stage_report& baud) {
   examined_lidar& lidar = of_.lidar;
   of_.log.begin(diagnostic_activity::searching);
   const std::uint32_t before = link.port().baud();
-  const auto found = link.search({.may_pulse_dtr = may_pulse_dtr_}, search_ns);
+  search_options how{.may_pulse_dtr = may_pulse_dtr_};
+  if (lidar.is_named) how.model = lidar.which;
+  auto found = link.search(how, search_ns);
+  // Which listens alone.
+  if (!found && lidar.is_one_way() && !link.is_over()) found = link.search({}, search_ns);
   if (!found) {
     if (link.port().baud() != before) static_cast<void>(link.set_baud(before));
     const error_detail why = found.error().detail();
     if (why != error_detail::unsupported_product && why != error_detail::other_maker) {
+      garbage_ = link.searched().unasked;
+      asked_ns_ = link.searched().asked_ns;
+      wait_for_late_answers();
       if (found.error() == problem::garbage) tried_ = found.error().subject();
       return state::none;
     }
@@ -224,14 +176,14 @@ first_contact::state first_contact::search(stage_report& baud) {
     baud.remark = cause_of(found.error());
     return state::refused;
   }
-  garbage_ = 0;
-  const auto is_named = [&lidar](const model* each) { return each->word == lidar.which->word; };
-  if (lidar.is_named && std::ranges::none_of(found->candidates, is_named)) {
+  const auto is_named = [&lidar](const model* each) { return each == lidar.which; };
+  if (lidar.is_named && std::ranges::none_of(found->candidates, is_named) &&
+      !may_be_named(*found)) {
     contradict(baud, *found);
     return state::refused;
   }
   if (!lidar.is_named) {
-    lidar.which = found->model;
+    lidar.which = found->candidates.front();
     lidar.candidates = found->candidates;
   }
   if (!is_expected_rate(found->baud)) {
@@ -241,12 +193,34 @@ first_contact::state first_contact::search(stage_report& baud) {
                   one_of(*lidar.which) + ".";
     return state::refused;
   }
-  if (link.port().baud() != before) asked_ns_ = -1;  // that query did not reach it
+  if (link.boots() > 0) asked_ns_ = link.searched().asked_ns;
+  wait_for_late_answers();
   lidar.is_met = true;
-  lidar.is_deaf = false;
-  lidar.was_scanning = lidar.was_scanning || found->was_scanning;
+  lidar.is_deaf = found->is_silent;
+  lidar.was_scanning = found->was_scanning;
   link.read_as(*lidar.which);
   return state::made;
+}
+
+/// To questions of the search.
+void first_contact::wait_for_late_answers() {
+  link_monitor& link = of_.link;
+  if (link.searched().asked_ns >= 0)
+    link.listen_for_quiet(late_answer_ns, link.now_ns() + 10 * late_answer_ns);
+}
+
+/// Whether a lidar may be the named one that fits others better: it may report another number. At its rate the stage
+/// identity decides that.
+bool first_contact::may_be_named(const recognised_lidar& found) const {
+  const examined_lidar& lidar = of_.lidar;
+  const auto size_of = [](const model& row) { return sample_size(row.samples.layout); };
+  const bool has_its_samples =
+      !found.was_scanning || size_of(*found.candidates.front()) == size_of(*lidar.which);
+  const bool answers = found.device.is_known() && !found.is_silent && !lidar.is_one_way();
+  const bool is_at_its_rate = !lidar.has_baud || has_rate(*lidar.which, found.baud);
+  return answers && has_its_samples &&
+         (is_at_its_rate ||
+          !refuses_number(of_.log.options(), *lidar.which, found.device.model, found.baud));
 }
 
 void first_contact::contradict(stage_report& baud, const recognised_lidar& found) {
@@ -254,7 +228,8 @@ void first_contact::contradict(stage_report& baud, const recognised_lidar& found
   const std::string words = words_of(found.candidates);
   const std::string where =
       lidar.has_baud ? " at " + std::to_string(found.baud) + " baud" : std::string();
-  const bool is_silent_one = !lidar.is_one_way() && found.model->link == link_kind::one_way;
+  const model& closest = *found.candidates.front();
+  const bool is_silent_one = !lidar.is_one_way() && closest.link == link_kind::one_way;
   if (is_silent_one) {
     of_.answers.find(diagnosis::one_way_lidar);
     of_.answers.remark = "This lidar answers nothing" + where +
@@ -262,22 +237,16 @@ void first_contact::contradict(stage_report& baud, const recognised_lidar& found
                          one_of(*lidar.which) + " answers.";
   } else {
     baud.find(diagnosis::other_device);
-    baud.remark =
-        "The lidar is " + one_of(*found.model) + where + ", not " + one_of(*lidar.which) + ".";
+    baud.remark = "The lidar is " + one_of(closest) + where + ", not " + one_of(*lidar.which) + ".";
   }
   baud.add("found_model", words);
   if (lidar.has_baud) baud.add("found_baud", found.baud);
 }
 
-/// Whether this is the rate that the user has named, or else one of the model that the user has named.
+/// Whether this is the rate that the user has named, if he has.
 bool first_contact::is_expected_rate(std::uint32_t baud) const noexcept {
-  const auto is_near = [baud](std::uint32_t wanted) {
-    return wanted != 0 && is_tolerable(baud, wanted);
-  };
   const std::uint32_t given = of_.log.options().baud;
-  if (!of_.lidar.has_baud) return true;
-  if (given != 0) return is_near(given);
-  return !of_.lidar.is_named || std::ranges::any_of(of_.lidar.which->bauds, is_near);
+  return !of_.lidar.has_baud || given == 0 || is_tolerable(baud, given);
 }
 
 // Whether a device that sends no reply starts nevertheless.

@@ -51,22 +51,21 @@ class first_contact {
   /// `may_pulse_dtr`: as in search_options.
   first_contact(parts of, bool may_pulse_dtr) noexcept : of_(of), may_pulse_dtr_(may_pulse_dtr) {}
 
-  /// Listens, asks, and searches all baud rates if nothing comes. All queries are asked if the first is
-  /// answered. `baud` is the stage baud_rate.
+  /// Searches, and asks what was found. All queries are asked if the first is answered. `baud` is the stage baud_rate.
   [[nodiscard]] state make(stage_report& baud);
-  /// Observes bytes without a query, and stops a scan. False if it does not stop, or may be none of a
-  /// two-way lidar.
+  /// Stops a scan. False if it does not stop.
   bool make_quiet();
   /// Adds to the stage answers that it was scanning, or does not listen.
   void report_scanning();
 
  private:
-  [[nodiscard]] bool hear_stream();
-  [[nodiscard]] bool is_of_two_way() const;
-  [[nodiscard]] bool ask(std::size_t from, std::size_t to);
+  [[nodiscard]] state unknown(stage_report& baud);
+  [[nodiscard]] bool ask();
   void ask_the_rest(exchange last);
   [[nodiscard]] bool recognise(const exchange& first);
   [[nodiscard]] state search(stage_report& baud);
+  [[nodiscard]] bool may_be_named(const recognised_lidar& found) const;
+  void wait_for_late_answers();
   /// The lidar that was found is not the one that was named.
   void contradict(stage_report& baud, const recognised_lidar& found);
   [[nodiscard]] bool is_expected_rate(std::uint32_t baud) const noexcept;
@@ -76,7 +75,7 @@ class first_contact {
   bool may_pulse_dtr_;
   std::int64_t asked_ns_ = -1;  // the first query without a reply
   std::string tried_;           // by the search, where something arrived: bytes and rates
-  std::uint64_t garbage_ = 0;   // bytes outside packets and responses, before the first query
+  std::uint64_t garbage_ = 0;   // bytes, where no lidar was found
 };
 
 }  // namespace g4lidar

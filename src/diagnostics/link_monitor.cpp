@@ -5,6 +5,7 @@
 #include <utility>
 #include <variant>
 
+#include "discovery/lidar_search.hpp"
 #include "stream_tally.hpp"
 
 namespace g4lidar {
@@ -208,7 +209,25 @@ void link_monitor::read_as(const model& which) {
 }
 
 result<recognised_lidar> link_monitor::search(const search_options& known, std::int64_t time_ns) {
-  auto found = g4lidar::search(*transport_, now_ns() + time_ns, known);
+  searched_ = {};
+  const std::uint32_t before = transport_->baud();
+  std::vector<std::pair<std::uint32_t, std::int64_t>> questions;  // rate and time
+  const search_observer to{
+      .received =
+          [&](bytes data, std::int64_t took_ns) {
+            if (took_ns > longest_read_ns + host_pause_after_ns) ++host_pauses_;
+            if (questions.empty()) searched_.unasked += data.size();
+            splitter_.take(data, now_ns(), {});
+          },
+      .asked = [&](std::uint32_t baud) { questions.emplace_back(baud, now_ns()); }};
+  auto found = lidar_search(*transport_, known, to).run(now_ns() + time_ns);
+  searched_.counts = counts();
+  const auto is_there = [&](const auto& each) {
+    return each.first == (found ? found->baud : before);
+  };
+  const auto first = std::ranges::find_if(questions, is_there);
+  const bool is_open = !found || std::ranges::count_if(questions, is_there) > 1;
+  if (is_open && first != questions.end()) searched_.asked_ns = first->second;
   const bool is_lost =
       !found && (found.error() == problem::gone || found.error() == problem::system ||
                  found.error() == problem::end_of_input || found.error() == problem::interference);

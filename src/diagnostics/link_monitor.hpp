@@ -102,6 +102,14 @@ struct exchange {
   }
 };
 
+/// What was observed during a search.
+struct search_record {
+  std::uint64_t unasked = 0;  ///< Bytes before the first question, at all rates.
+  stream_counts counts{};
+  std::int64_t asked_ns =
+      -1;  ///< The first question at the rate of the lidar, if it may not have been answered.
+};
+
 /// *Single thread.* After a loss (error()) nothing arrives, and every call returns immediately.
 class link_monitor {
  public:
@@ -160,6 +168,8 @@ class link_monitor {
   void read_as(const model& which);
   /// Finds the lidar at the transport, as search() does, in this time, which begins now.
   [[nodiscard]] result<recognised_lidar> search(const search_options& known, std::int64_t time_ns);
+  /// Of the last one.
+  [[nodiscard]] const search_record& searched() const noexcept { return searched_; }
   /// Sets the rate of the transport, if it has one that can be changed; returns whether it has.
   bool set_baud(std::uint32_t baud);
 
@@ -182,6 +192,7 @@ class link_monitor {
   std::uint64_t host_pauses_ = 0;
   std::int64_t host_paused_ns_ = 0;
   stream_survey survey_;
+  search_record searched_;
 };
 
 /// Lowers the line DTR for this time, which stops a motor that it drives, and raises it. False if there is none.

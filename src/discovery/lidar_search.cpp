@@ -2,7 +2,7 @@
 #include "lidar_search.hpp"
 
 #include <algorithm>
-#include <span>
+#include <iterator>
 #include <utility>
 
 #include "g4lidar/core/request.hpp"
@@ -27,14 +27,15 @@ constexpr std::size_t stream_bytes = 32;
 /// Two of the longest packets: one of them is whole.
 constexpr std::size_t hopeless_bytes = 340;
 
-/// The rates at which two-way lidars answer, those with the most users first. At the last one no motor is driven by DTR:
-/// such a motor starts later.
-constexpr std::array<std::uint32_t, 5> asking_rates{230'400, 128'000, 115'200, 153'600, 512'000};
+/// The order of asking: the rates of two-way lidars, those with the most users first, then those of variants. At the last
+/// one of the usual ones no motor is driven by DTR: such a motor starts later.
+constexpr std::array<std::uint32_t, 10> asking_rates{230'400, 128'000, 115'200, 153'600, 512'000,
+                                                     150'000, 214'285, 256'000, 460'800, 921'600};
 
 }  // namespace
 
-lidar_search::lidar_search(transport& port, const search_options& options)
-    : port_(port), options_(options) {
+lidar_search::lidar_search(transport& port, const search_options& options, search_observer observer)
+    : port_(port), options_(options), observer_(std::move(observer)) {
   const auto add = [this](std::uint32_t baud) {
     if (baud != 0 && std::ranges::find(rates_, baud) == rates_.end()) rates_.push_back(baud);
   };
@@ -45,6 +46,10 @@ lidar_search::lidar_search(transport& port, const search_options& options)
   } else {
     std::ranges::for_each(usual_rates, add);
   }
+  if (options.baud != 0) return;
+  std::ranges::copy_if(asking_rates, std::back_inserter(others_), [this](std::uint32_t baud) {
+    return std::ranges::find(rates_, baud) == rates_.end();
+  });
 }
 
 std::int64_t lidar_search::in_ns(std::int64_t time_ns) const noexcept {
@@ -86,29 +91,27 @@ lidar_search::found lidar_search::round(bool is_first) {
     if (!done || *done) return done;
   }
   if (has_fixed_rate_) return done;
-  if (sending_ == rates_.size() && options_.baud == 0) {
-    for (const std::span<const std::uint32_t> others :
-         {std::span(usual_rates), std::span(unusual_rates)}) {
-      for (const std::uint32_t baud : others) {
-        if (std::ranges::find(rates_, baud) != rates_.end()) continue;
-        done = visit(baud, listening_ns);
-        if (!done || *done) return done;
-      }
+  if (sending_ == rates_.size()) {
+    for (const std::uint32_t baud : others_) {
+      done = visit(baud, listening_ns);
+      if (!done || *done) return done;
     }
   }
   if (sending_ > 0 || only_listens()) return done;
-  return ask_the_others(is_first ? answer_ns : late_answer_ns);
-}
-
-/// At all rates but the first.
-lidar_search::found lidar_search::ask_the_others(std::int64_t wait_ns) {
   std::vector<std::uint32_t> order(rates_.begin() + 1, rates_.end());
   std::ranges::sort(order, {}, [](std::uint32_t baud) {
     return std::ranges::find(asking_rates, baud) - asking_rates.begin();
   });
-  for (const std::uint32_t baud : order) {
+  done = ask(order, is_first ? answer_ns : late_answer_ns);
+  if (is_first || !done || *done) return done;
+  return ask(others_, answer_ns);
+}
+
+/// Ends early when something begins to send.
+lidar_search::found lidar_search::ask(std::span<const std::uint32_t> rates, std::int64_t wait_ns) {
+  for (const std::uint32_t baud : rates) {
     auto done = question(baud, wait_ns);
-    if (!done || *done) return done;
+    if (!done || *done || heard_.count() >= stream_bytes) return done;
   }
   return std::nullopt;
 }
@@ -131,8 +134,10 @@ lidar_search::found lidar_search::visit(std::uint32_t baud, std::int64_t listen_
   const auto tuned = tune(baud);
   if (!tuned) return tl::unexpected(tuned.error());
   if (!*tuned) return std::nullopt;
-  const auto is_decided = [this] {
-    return heard_.layout().sample_bytes() != 0 || heard_.maker() != nullptr;
+  // A device that has booted may announce itself.
+  const auto is_announced = [this] { return device_ && !only_listens(); };
+  const auto is_decided = [&] {
+    return heard_.layout().sample_bytes() != 0 || heard_.maker() != nullptr || is_announced();
   };
   const auto is_enough = [&] { return is_decided() || is_hopeless(); };
   if (auto done = listen(in_ns(listen_ns), is_enough); !done) return tl::unexpected(done.error());
@@ -142,6 +147,7 @@ lidar_search::found lidar_search::visit(std::uint32_t baud, std::int64_t listen_
     }
   }
   if (heard_.layout().sample_bytes() != 0) return judge_stream();
+  if (is_announced()) return judge_reply();
   if (!is_decided()) heard_.finish();
   if (const other_maker* const other = heard_.maker()) {
     return failure(task::asking, problem::other_device,
@@ -160,6 +166,7 @@ lidar_search::found lidar_search::question(std::uint32_t baud, std::int64_t wait
   if (!*tuned) return std::nullopt;
   const auto ask = encode(command::device_info);
   all_heard_.sent(ask);
+  if (observer_.asked) observer_.asked(port_.baud());
   const auto sent = port_.write(ask, port_.now_ns() + write_ns);
   if (!sent && sent.error() != problem::timeout) return tl::unexpected(sent.error());
   const auto is_enough = [this] { return device_ || heard_.layout().sample_bytes() != 0; };
@@ -168,7 +175,7 @@ lidar_search::found lidar_search::question(std::uint32_t baud, std::int64_t wait
   return device_ ? judge_reply() : found();
 }
 
-/// For a motor that DTR drives: it needs an edge.
+/// For a motor that DTR drives: it needs an edge. Until it turns there is time for the questions at other rates.
 lidar_search::found lidar_search::pulse() {
   options_.may_pulse_dtr = false;  // once
   auto lowered = port_.set_dtr(false);
@@ -181,11 +188,13 @@ lidar_search::found lidar_search::pulse() {
   has_pulsed_ = true;
   const std::int64_t until_ns = port_.now_ns() + after_pulse_ns;
   deadline_ns_ = std::max(deadline_ns_, until_ns);
-  while (port_.now_ns() < until_ns) {
-    for (const std::uint32_t baud : rates_) {
-      auto done = visit(baud, listening_ns);
-      if (!done || *done) return done;
-    }
+  if (!only_listens() && !has_fixed_rate_) {
+    auto done = ask(others_, answer_ns);
+    if (!done || *done) return done;
+  }
+  for (std::size_t i = 0; port_.now_ns() < until_ns; ++i) {
+    auto done = visit(rates_[i % rates_.size()], listening_ns);
+    if (!done || *done) return done;
   }
   return std::nullopt;
 }

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -17,6 +19,13 @@ namespace g4lidar {
 
 enum class stop_attempts : std::uint8_t;
 
+/// What a search receives and asks, as it does. Either may be empty.
+struct search_observer {
+  /// The bytes of one read, none if nothing arrived, and how long it took.
+  std::function<void(bytes, std::int64_t took_ns)> received{};
+  std::function<void(std::uint32_t baud)> asked{};
+};
+
 /// One search. *Single thread; allocates.*
 ///
 /// Two-way lidars are silent until they are asked; one-way lidars send always, and answer nothing. So it
@@ -26,7 +35,7 @@ enum class stop_attempts : std::uint8_t;
 /// byte.
 class lidar_search {
  public:
-  lidar_search(transport& port, const search_options& options);
+  lidar_search(transport& port, const search_options& options, search_observer observer = {});
 
   [[nodiscard]] result<recognised_lidar> run(std::int64_t deadline_ns);
 
@@ -42,7 +51,7 @@ class lidar_search {
 
   [[nodiscard]] result<recognised_lidar> find(std::int64_t deadline_ns);
   [[nodiscard]] found round(bool is_first);
-  [[nodiscard]] found ask_the_others(std::int64_t wait_ns);
+  [[nodiscard]] found ask(std::span<const std::uint32_t> rates, std::int64_t wait_ns);
   [[nodiscard]] found visit(std::uint32_t baud, std::int64_t listen_ns);
   [[nodiscard]] found question(std::uint32_t baud, std::int64_t wait_ns);
   [[nodiscard]] found pulse();
@@ -74,7 +83,9 @@ class lidar_search {
 
   transport& port_;
   search_options options_;
-  std::vector<std::uint32_t> rates_;  // in the order of listening
+  search_observer observer_;
+  std::vector<std::uint32_t> rates_;   // in the order of listening
+  std::vector<std::uint32_t> others_;  // that lidars have
   std::vector<std::uint32_t> tried_;
   std::int64_t deadline_ns_ = 0;
   bool has_fixed_rate_ = false;
@@ -93,9 +104,12 @@ result<void> lidar_search::listen(std::int64_t until_ns, Enough is_enough) {
     if (options_.is_cancelled && options_.is_cancelled()) {
       return failure(task::asking, problem::cancelled, port_.name());
     }
-    const auto got = port_.read(buffer, std::min(until_ns, port_.now_ns() + look_ns));
+    const std::int64_t begin_ns = port_.now_ns();
+    const auto got = port_.read(buffer, std::min(until_ns, begin_ns + look_ns));
     if (!got) return tl::unexpected(got.error());
-    take(bytes(buffer).first(got->count));
+    const bytes data = bytes(buffer).first(got->count);
+    take(data);
+    if (observer_.received) observer_.received(data, port_.now_ns() - begin_ns);
   }
   return {};
 }

@@ -23,13 +23,6 @@ error refused(const transport& port, std::string_view product) {
           error_detail::unsupported_product};
 }
 
-/// The models with samples of this size, whatever their rates; those that answer so, if there are any. Never empty for 2, 3
-/// and 4 bytes.
-std::vector<const model*> models_of_size(std::size_t sample_bytes, presence answers) {
-  auto all = models_that_fit({.sample_bytes = sample_bytes, .answers = answers});
-  return all.empty() ? models_that_fit({.sample_bytes = sample_bytes}) : all;
-}
-
 }  // namespace
 
 lidar_signs lidar_search::signs() const noexcept {
@@ -157,24 +150,14 @@ lidar_search::found lidar_search::judge_silent(lidar_signs known, std::int64_t u
   return made(std::move(all), known);
 }
 
-/// A device that has answered with its number. Certain packets are right where they contradict it; and a number that no
-/// model has decides nothing.
+/// A device that has answered with its number.
 lidar_search::found lidar_search::judge_number(lidar_signs known) {
   const std::string_view product = other_product(known.id);
   if (!product.empty() && options_.model == nullptr && known.sample_bytes == 0)
     return tl::unexpected(refused(port_, product));
-  auto fitting = models_that_fit(known);
-  if (!fitting.empty()) return made(std::move(fitting), known);
   const bool is_certain = heard_.layout().votes(known.sample_bytes) >= certain_packets;
-  if (known.sample_bytes != 0 && !is_certain) {
-    lidar_signs without = known;
-    without.sample_bytes = 0;
-    fitting = models_that_fit(without);
-    if (!fitting.empty()) return made(std::move(fitting), known);
-  }
-  known.id = 0;
-  fitting = models_that_fit(known);
-  if (fitting.empty()) fitting = models_of_size(known.sample_bytes, presence::yes);
+  auto fitting = models_of_answer(known, is_certain);
+  if (!fitting.front()->has_number(known.id)) known.id = 0;
   return made(std::move(fitting), known);
 }
 
@@ -183,8 +166,9 @@ lidar_search::found lidar_search::judge_number(lidar_signs known) {
 lidar_search::found lidar_search::judge_reply() {
   lidar_signs known = signs();
   known.answers = presence::no;
-  const auto may_announce = [&](const model* row) { return has_rate(*row, port_.baud()); };
-  if (std::ranges::any_of(models_that_fit(known), may_announce)) {
+  const auto has_this_rate = [&](const model* row) { return has_rate(*row, port_.baud()); };
+  const bool may_announce = std::ranges::any_of(models_that_fit(known), has_this_rate);
+  if (may_announce) {
     const auto is_stream = [this] { return heard_.layout().sample_bytes() != 0; };
     if (auto done = listen(in_ns(announcement_ns), is_stream); !done) {
       return tl::unexpected(done.error());
@@ -192,10 +176,7 @@ lidar_search::found lidar_search::judge_reply() {
     if (is_stream()) return judge_stream();
   }
   known.answers = presence::yes;
-  if (models_that_fit(known).empty()) {
-    known.answers = presence::unknown;
-    if (models_that_fit(known).empty()) known.answers = presence::yes;
-  }
+  if (may_announce && models_that_fit(known).empty()) known.answers = presence::unknown;
   return judge_number(known);
 }
 

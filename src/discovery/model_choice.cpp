@@ -106,6 +106,24 @@ std::vector<const model*> models_that_fit(const lidar_signs& seen) {
   return found;
 }
 
+std::vector<const model*> models_of_size(std::size_t sample_bytes, presence answers) {
+  auto all = models_that_fit({.sample_bytes = sample_bytes, .answers = answers});
+  return all.empty() ? models_that_fit({.sample_bytes = sample_bytes}) : all;
+}
+
+std::vector<const model*> models_of_answer(lidar_signs seen, bool are_samples_certain) {
+  auto fitting = models_that_fit(seen);
+  if (fitting.empty() && !are_samples_certain) {
+    lidar_signs without = seen;
+    without.sample_bytes = 0;
+    fitting = models_that_fit(without);
+  }
+  if (!fitting.empty()) return fitting;
+  seen.id = 0;
+  fitting = models_that_fit(seen);
+  return fitting.empty() ? models_of_size(seen.sample_bytes, presence::yes) : fitting;
+}
+
 bool may_be_two_way(const lidar_signs& seen) {
   const std::vector<const model*> all = models_that_fit(seen);
   const auto is_near = [&seen](const model* row) { return may_measure(*row, seen.sample_rate_hz); };

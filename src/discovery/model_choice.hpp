@@ -15,9 +15,6 @@ namespace g4lidar {
 /// The rates of all models: that of a G4, then those with the most users.
 inline constexpr std::array<std::uint32_t, 5> usual_rates{230'400, 115'200, 128'000, 512'000,
                                                           153'600};
-/// Of variants and other products; tried if something sends at all usual rates, and nothing fits.
-inline constexpr std::array<std::uint32_t, 5> unusual_rates{150'000, 214'285, 256'000, 460'800,
-                                                            921'600};
 
 /// What is known about a lidar at a port.
 struct lidar_signs {
@@ -38,6 +35,15 @@ struct lidar_signs {
 /// otherwise. Models with the number as their usual one come before those that some devices report it of.
 /// Empty if there is none. *Allocates.*
 [[nodiscard]] std::vector<const model*> models_that_fit(const lidar_signs& seen);
+
+/// The models with samples of this size, whatever their rates; those that answer so, if there are any. Never empty for 0, 2,
+/// 3 and 4 bytes. *Allocates.*
+[[nodiscard]] std::vector<const model*> models_of_size(std::size_t sample_bytes, presence answers);
+
+/// The models of a device that has answered with its number. Samples that are certain are right where they contradict it; a
+/// number that no model has decides nothing. Never empty. *Allocates.*
+[[nodiscard]] std::vector<const model*> models_of_answer(lidar_signs seen,
+                                                         bool are_samples_certain);
 
 /// Whether a lidar of this model has such a baud rate, as far as bytes arrive. *Pure.*
 [[nodiscard]] bool has_rate(const model& row, std::uint32_t baud) noexcept;

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/number_text.hpp"
+#include "discovery/port_words.hpp"
 #include "driver.hpp"
 #include "g4lidar/detail/enumerators.hpp"
 #include "g4lidar/source.hpp"
@@ -60,6 +61,16 @@ bool waited(const lidar_options& options) {
   return true;
 }
 
+/// Whether the lidar may have another rate than its model: what sends there is not the named model at its rate; or it
+/// sends, and answers nothing; or nothing is heard at this rate, and the rate can be changed.
+bool may_be_at_another_rate(const error& why, const lidar_options& options) {
+  if (kind_of_source(options.device) != source_kind::device) return false;
+  if (why == problem::does_not_stop) return true;
+  const bool is_bridge = path_of_source(options.device).starts_with(tcp_prefix);
+  const bool is_silent = why == problem::silence && why.detail() != error_detail::searched;
+  return options.baud == 0 && (why == problem::garbage || (is_silent && !is_bridge));
+}
+
 }  // namespace
 
 result<lidar> lidar::open(const lidar_options& options) {
@@ -74,10 +85,7 @@ result<lidar> lidar::open(const lidar_options& options) {
       return from ? open(*std::move(from), used) : tl::unexpected(from.error());
     };
     auto opened = open_at(false);
-    // Something sends there, and not as the named model does at its rate; or it sends, and answers nothing.
-    const bool is_other = !opened && ((opened.error() == problem::garbage && options.baud == 0) ||
-                                      opened.error() == problem::does_not_stop);
-    if (is_other && kind_of_source(options.device) == source_kind::device) opened = open_at(true);
+    if (!opened && may_be_at_another_rate(opened.error(), options)) opened = open_at(true);
     const auto waited_for = std::chrono::steady_clock::now() - begin;
     const bool is_late =
         std::chrono::duration_cast<milliseconds>(waited_for) >= options.device_wait;

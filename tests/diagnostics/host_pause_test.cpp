@@ -87,7 +87,7 @@ TEST(HostPause, DuringTheQueriesExplainsAFewLateReplies) {
     sim::device simulated(sim::built_in_world(), options, faults_of({"late=200ms*0.12"}));
     sim::virtual_clock clock;
     const examined done =
-        examine(simulated, clock, {}, wrap_in<paused_host>(&clock, 700 * ms, 300 * ms));
+        examine(simulated, clock, {}, wrap_in<paused_host>(&clock, 300 * ms, 300 * ms));
     EXPECT_THAT(done.diagnoses(), testing::Not(testing::HasSubstr("answers_late"))) << seed << done;
     busy += done.diagnoses() == "host_busy" ? 1 : 0;
   }

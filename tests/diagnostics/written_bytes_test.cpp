@@ -42,14 +42,14 @@ std::set<std::string> commands_in(const std::vector<std::string>& notes) {
   return all;
 }
 
-// Its first question at 230400, the search of 3 s with the pulse of DTR, which is low after it, and two more questions.
+// The search of 3 s with the pulse of DTR, which is low after it, and three more questions.
 TEST(WrittenBytes, SilentPort_GetsTheQuestionForItsIdentityAlone) {
   const written seen = examine_noting({}, faults_of({"deaf"}));
   EXPECT_EQ(seen.done.diagnoses(), "silent") << seen.done;
-  const std::vector<std::string> expected{"90@230400",  //
-                                          "90@230400", "90@128000", "90@115200", "90@153600",
-                                          "90@512000", "dtr=0",     "dtr=1",     "dtr=0",
-                                          "90@230400", "90@230400"};
+  const std::vector<std::string> expected{
+      "90@230400", "90@128000", "90@115200", "90@153600", "90@512000", "dtr=0",
+      "dtr=1",     "90@150000", "90@214285", "90@256000", "90@460800", "90@921600",
+      "90@230400", "dtr=0",     "90@230400", "90@230400", "90@230400"};
   EXPECT_EQ(seen.notes, expected);
   EXPECT_NE(seen.done.at(diagnostic_stage::answers).remark.find("No model was named"),
             std::string::npos)

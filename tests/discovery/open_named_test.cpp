@@ -87,6 +87,32 @@ INSTANTIATE_TEST_SUITE_P(Models, OpenAtTheOtherRate,
                          testing::Values("s2", "s2-pro", "s2-intensity", "s2-pro-intensity"),
                          test_name);
 
+/// A named model with one rate, which is opened without a search; its device waits for a command at another rate.
+TEST(OpenAtAnotherRate, ANamedOneIsFound_AndAnotherOneIsRefused) {
+  auto served =
+      sim::background_pty::open(sim::device(sim::built_in_world(), options_of("g4", 512'000)));
+  ASSERT_TRUE(served);
+  auto opened = lidar::open(served->path() + "?model=g4");
+  ASSERT_TRUE(opened) << opened.error().message();
+  EXPECT_EQ(opened->recognition().baud, 512'000U);
+  EXPECT_NE(contradictions_of(opened->recognition()).find("512000 baud, a G4 usually at 230400"),
+            std::string::npos);
+  ASSERT_TRUE(opened->close());
+  const auto swapped =
+      sim::background_pty::open(sim::device(sim::built_in_world(), options_of("tg15")));
+  ASSERT_TRUE(swapped);
+  lidar_options how;
+  how.device = swapped->path();
+  how.model = &g4_model;
+  const auto refused = lidar::open(how);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error(), problem::other_device) << refused.error().message();
+  EXPECT_NE(refused.error().message().find("--model WORD!"), std::string::npos);
+  how.insist_on_model = true;
+  const auto insisted = lidar::open(how);
+  EXPECT_TRUE(insisted) << insisted.error().message();
+}
+
 // The number of the F4 Pro's manual is also that of an S4 and an S4B, which have other rates.
 TEST(SharedNumber, TheRateDecides) {
   sim::device_options f4_pro = options_of("f4-pro");

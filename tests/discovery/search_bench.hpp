@@ -59,8 +59,8 @@ inline constexpr std::int64_t longest_search_ns = 3'000'000'000;
 /// In a port that is opened at the rate of a G4, after the device has had power for 5 s. If the port
 /// was open before, its end has stopped a motor that DTR drives.
 inline searched search_at(const sim::device_options& options, const search_options& how = {},
-                          const std::vector<sim::fault>& faults = {},
-                          bool was_open_before = false) {
+                          const std::vector<sim::fault>& faults = {}, bool was_open_before = false,
+                          std::int64_t longest_ns = longest_search_ns) {
   constexpr std::int64_t before_ns = 5'000'000'000;
   sim::device simulated(sim::built_in_world(), options, faults);
   sim::virtual_clock clock;
@@ -70,7 +70,7 @@ inline searched search_at(const sim::device_options& options, const search_optio
   EXPECT_EQ(inner->set_baud(g4_model.bauds[0]), true);
   noting_port port(std::move(inner));
   const std::int64_t begin_ns = port.now_ns();
-  auto lidar = search(port, begin_ns + longest_search_ns, how);
+  auto lidar = search(port, begin_ns + longest_ns, how);
   return {std::move(lidar), port.now_ns() - begin_ns, port.notes()};
 }
 

@@ -10,7 +10,6 @@
 #include <variant>
 #include <vector>
 
-#include "discovery/model_choice.hpp"
 #include "g4lidar/core/model.hpp"
 #include "g4lidar/sim/device.hpp"
 #include "g4lidar/sim/device_options.hpp"
@@ -44,10 +43,9 @@ TEST(WrongRate, NoOtherMakerIsNamed) {
   const auto blind = sim::parse_world("wall -900 900 900 900\nlidar 0 0 0\n");
   for (const model& which : models) {
     for (const sim::world& scene : {sim::built_in_world(), std::get<sim::world>(blind)}) {
-      for (const auto& rates : {usual_rates, unusual_rates}) {
-        for (const std::uint32_t baud : rates) {
-          EXPECT_EQ(named_in(which, scene, baud), "") << which.word << " at " << baud;
-        }
+      for (const std::uint32_t baud : {230'400U, 115'200U, 128'000U, 512'000U, 153'600U, 150'000U,
+                                       214'285U, 256'000U, 460'800U, 921'600U}) {
+        EXPECT_EQ(named_in(which, scene, baud), "") << which.word << " at " << baud;
       }
     }
   }

@@ -40,7 +40,7 @@ typedef struct g4lidar_ports g4lidar_ports;
 typedef struct g4lidar_find_options {
   size_t struct_size;       /**< Set by g4lidar_find_options_init(). */
   uint32_t baud;            /**< Bits per second; 0: all that lidars have. */
-  int32_t probe_timeout_ms; /**< For each port; 3000. */
+  int32_t probe_timeout_ms; /**< For each port; 4000. */
   /** Write to every serial port, also to ports without the USB bridge of a G4. Commands of two bytes
    *  each are then sent to any device, at several rates: a printer, a modem, a robot arm. */
   bool probe_all_ports;
