@@ -18,6 +18,9 @@ class device_link {
   /// A device that has been silent for this time will not continue an unfinished packet. Bridges hold
   /// bytes back for up to 16 ms.
   static constexpr std::int64_t usual_cut_off_ns = 30'000'000;
+  /// Through a network bridge it is so many times as long: TCP holds the second part of an answer back for 40 ms (Nagle's
+  /// algorithm, and an acknowledgement that is delayed), and a wireless link for longer.
+  static constexpr std::int64_t network_factor = 8;
 
   /// `input` parses the bytes of `on`, which may be null before follow(). Both must outlive this. `listens`: nothing is
   /// sent, as to a one-way lidar.
@@ -28,11 +31,13 @@ class device_link {
         on_(on),
         session_(times, which),
         cut_off_after_ns_(cut_off_after_ns),
-        listens_(listens || which.link == link_kind::one_way) {}
+        listens_(listens || which.link == link_kind::one_way),
+        is_bridged_(on != nullptr && is_bridge(*on)) {}
 
   /// Another transport: nothing is known about the device.
   void follow(transport& on) noexcept {
     on_ = &on;
+    is_bridged_ = is_bridge(on);
     session_.reset();
     heard_ns_ = on.now_ns();
   }
@@ -104,8 +109,12 @@ class device_link {
   }
 
  private:
+  [[nodiscard]] static bool is_bridge(const transport& on) noexcept {
+    return on.name().starts_with("tcp:");
+  }
   [[nodiscard]] std::int64_t cut_off_ns() const noexcept {
-    return input_.held() > 0 && awaits_answer() ? heard_ns_ + cut_off_after_ns_ : never_ns;
+    if (input_.held() == 0 || !awaits_answer()) return never_ns;
+    return heard_ns_ + cut_off_after_ns_ * (is_bridged_ ? network_factor : 1);
   }
 
   event_reader& input_;
@@ -114,6 +123,7 @@ class device_link {
   std::int64_t cut_off_after_ns_;
   std::int64_t heard_ns_ = 0;
   bool listens_;
+  bool is_bridged_;
 };
 
 }  // namespace g4lidar

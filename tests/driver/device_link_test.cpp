@@ -50,11 +50,13 @@ class scripted_transport final : public transport {
   result<void> pause(std::int64_t) noexcept override { return {}; }
   [[nodiscard]] std::int64_t now_ns() const noexcept override { return now_ns_; }
   void wake() noexcept override {}
-  [[nodiscard]] std::string_view name() const noexcept override { return "script"; }
+  [[nodiscard]] std::string_view name() const noexcept override { return name_; }
+  void set_name(std::string_view name) noexcept { name_ = name; }
 
  private:
   std::deque<std::pair<std::int64_t, std::vector<std::uint8_t>>> left_;
   std::int64_t now_ns_ = 1'000'000;
+  std::string_view name_ = "script";
 };
 
 /// A link, and what its sink gets: "p" a packet, "r" a response, "-" a skipped byte.
@@ -103,6 +105,24 @@ TEST(DeviceLink, TheSessionOfAOneWayLidarGetsNone) {
   EXPECT_EQ(on.receive(never_ns), "");
   EXPECT_EQ(on.link.due_ns(), never_ns);  // packets come later or never: there is no answer to lose
   EXPECT_EQ(on.receive(6'000'000 + 10 * pause_ns), "");
+}
+
+// TCP delays the rest of an answer by 40 ms, if it was written in parts.
+TEST(DeviceLink, AnAnswerInTwoPartsFromANetworkBridgeIsOne) {
+  const auto reply = device_information_reply();
+  bench on;
+  on.port.set_name("tcp:192.0.2.1:4000");
+  on.link.follow(on.port);
+  on.port.add(5'000'000, bytes(reply).first(15));
+  EXPECT_EQ(on.receive(never_ns), "");
+  EXPECT_EQ(on.receive(50'000'000), "");
+  on.port.add(50'000'000, bytes(reply).subspan(15));
+  EXPECT_EQ(on.receive(never_ns), "r");
+  // The rest may also be lost.
+  on.port.add(60'000'000, bytes(reply).first(15));
+  EXPECT_EQ(on.receive(never_ns), "");
+  EXPECT_EQ(on.link.due_ns(), 60'000'000 + 8 * pause_ns);
+  EXPECT_EQ(on.receive(on.link.due_ns()), "---------------");
 }
 
 // The header of a packet claims 80 more bytes, of which an answer would be a part.
