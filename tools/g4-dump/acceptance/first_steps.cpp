@@ -75,7 +75,7 @@ void listening(subject& of, step_result& into) {
   std::int64_t first_ns = listen();
   if (!is_two_way && first_ns < 0 && of.link->sample_bytes() == 0 && of.find_baud(into))
     first_ns = listen();
-  stream_survey heard = of.link->survey(1'000 * ms);
+  packet_survey heard = of.link->survey(1'000 * ms);
   into.add("sample_bytes", of.link->sample_bytes());
   of.adapt_layout();
   if (heard.counts.packets == 0) heard = of.link->survey(1'000 * ms);

@@ -242,17 +242,17 @@ bool lidar_link::stop() {
   return is_silent;
 }
 
-stream_survey lidar_link::survey(std::int64_t time_ns) {
-  stream_survey made(which_);
+packet_survey lidar_link::survey(std::int64_t time_ns) {
+  packet_survey made(which_);
   listen(now_ns() + time_ns,
          [&](const event& found, std::int64_t arrival_ns) { made.take(found, arrival_ns); });
   return made;
 }
 
-stream_survey steady_survey(lidar_link& link, std::int64_t time_ns) {
+packet_survey steady_survey(lidar_link& link, std::int64_t time_ns) {
   constexpr int most = 3;
   for (int i = 1;; ++i) {
-    stream_survey made = link.survey(time_ns);
+    packet_survey made = link.survey(time_ns);
     if (made.is_steady() || i == most || time_ns > short_survey_ns || link.is_over()) return made;
   }
 }

@@ -94,7 +94,7 @@ class lidar_link {
   /// Sets the line DTR; false if there is none.
   bool set_dtr(bool high);
   /// A scan of this length.
-  [[nodiscard]] stream_survey survey(std::int64_t time_ns);
+  [[nodiscard]] packet_survey survey(std::int64_t time_ns);
 
   [[nodiscard]] transport& port() noexcept { return *port_; }
   [[nodiscard]] std::int64_t now_ns() const noexcept { return port_->now_ns(); }
@@ -138,6 +138,6 @@ bool pulse_dtr(lidar_link& link, std::int64_t low_ns = 120 * ms);
 /// Waits until four revolutions and a second have the same speed within 3 %, at most 12 s.
 [[nodiscard]] steady_motor wait_until_steady(lidar_link& link);
 /// A survey for its rates: a short one that is not steady is repeated, twice.
-[[nodiscard]] stream_survey steady_survey(lidar_link& link, std::int64_t time_ns);
+[[nodiscard]] packet_survey steady_survey(lidar_link& link, std::int64_t time_ns);
 
 }  // namespace g4_tool::acceptance

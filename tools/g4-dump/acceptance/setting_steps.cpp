@@ -75,7 +75,7 @@ void sample_rate(subject& of, step_result& into) {
     if (!code || !codes.insert(*code).second) break;
     static_cast<void>(of.link->start());
     static_cast<void>(of.link->survey(measured_ns));  // while the motor spins up
-    const stream_survey heard = steady_survey(*of.link, measured_ns);
+    const packet_survey heard = steady_survey(*of.link, measured_ns);
     of.link->stop();
     if (heard.is_steady() || heard.counts.packets == 0) {
       into.add(fmt::format("code_{}_hz", *code), heard.sample_rate_hz());

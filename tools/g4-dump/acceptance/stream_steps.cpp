@@ -25,15 +25,15 @@ constexpr std::array<std::string_view, 5> bit_words{"not clear", "always 0", "fl
                                                     "range"};
 
 /// Ranges have all values about equally often; flags have one much more often than the others.
-bit_use use_by_values(const stream_survey& heard) {
+bit_use use_by_values(const packet_survey& heard) {
   constexpr std::uint64_t fewest = 1'000;
   std::array<std::uint64_t, 4> values{};
-  for (std::size_t zone = stream_survey::below_1_m; zone < stream_survey::zones; ++zone) {
+  for (std::size_t zone = packet_survey::below_1_m; zone < packet_survey::zones; ++zone) {
     for (std::size_t value = 0; value < values.size(); ++value)
       values.at(value) += heard.bits.at(zone).at(value);
   }
   const std::uint64_t returns = values[0] + values[1] + values[2] + values[3];
-  const auto& [none, first, second, third] = heard.bits[stream_survey::no_return];
+  const auto& [none, first, second, third] = heard.bits[packet_survey::no_return];
   if (returns < fewest) return bit_use::unclear;
   if (returns == values[0] && first + second + third == 0) return bit_use::unused;
   if (*std::ranges::min_element(values) * 20 >= returns) return bit_use::range;
@@ -41,7 +41,7 @@ bit_use use_by_values(const stream_survey& heard) {
 }
 
 /// Where the bits change, a byte of intensity below them overflows, and one beside flags goes on.
-bit_use use_by_changes(const stream_survey& heard) {
+bit_use use_by_changes(const packet_survey& heard) {
   constexpr std::uint64_t fewest = 20;
   const std::uint64_t all = heard.smooth_changes + heard.overflows;
   if (all < fewest) return bit_use::unclear;
@@ -68,9 +68,9 @@ void stream(subject& of, step_result& into) {
   }
   static_cast<void>(link.survey(spun_up_ns));
   const std::uint64_t skipped_before = link.counts().skipped_bytes();
-  of.surveyed = std::make_unique<stream_survey>(
+  of.surveyed = std::make_unique<packet_survey>(
       steady_survey(link, std::chrono::nanoseconds(of.options.stream_time).count()));
-  const stream_survey& heard = *of.surveyed;
+  const packet_survey& heard = *of.surveyed;
   link.stop();
   const std::uint64_t packets = heard.counts.packets;
   into.add("packets", packets);
@@ -102,9 +102,9 @@ void stream(subject& of, step_result& into) {
 }
 
 void sample_bits(subject& of, step_result& into) {
-  const stream_survey& heard = *of.surveyed;
+  const packet_survey& heard = *of.surveyed;
   const sample_layout layout = of.row.samples.layout;
-  constexpr std::array<std::string_view, stream_survey::zones> names{"no_return", "below_1_m",
+  constexpr std::array<std::string_view, packet_survey::zones> names{"no_return", "below_1_m",
                                                                      "below_2_m", "beyond"};
   for (std::size_t at = 0; at < names.size(); ++at)
     into.add(fmt::format("{}_bits", names.at(at)),
@@ -130,7 +130,7 @@ void sample_bits(subject& of, step_result& into) {
 void ct_information(subject& of, step_result& into) {
   constexpr std::uint64_t packets_with_information = 14;
   constexpr std::uint64_t enough = 3;
-  const stream_survey& heard = *of.surveyed;
+  const packet_survey& heard = *of.surveyed;
   const auto& who = heard.information();
   const bool has_byte = heard.crc_fits + heard.crc_misfits >= enough;
   const bool has_crc = heard.crc_fits >= enough && heard.crc_fits > heard.crc_misfits;

@@ -46,7 +46,7 @@ class subject {
   std::unique_ptr<lidar_link> link{};  ///< Null: there is no connection.
   kept_settings settings{};
   std::vector<step_result> results{};
-  std::unique_ptr<stream_survey> surveyed{};  ///< Null: there was no stream.
+  std::unique_ptr<packet_survey> surveyed{};  ///< Null: there was no stream.
   std::optional<std::size_t> target_degree{};
   std::vector<std::uint8_t> identified{};   ///< The content of the answer to 90.
   std::optional<double> zero_offset_deg{};  ///< Of the answer to 93.

@@ -74,7 +74,7 @@ std::optional<std::size_t> direction_survey::farthest() const {
   return best;
 }
 
-void stream_survey::take(const event& found, std::int64_t arrival_ns) {
+void packet_survey::take(const event& found, std::int64_t arrival_ns) {
   if (const auto* const packet = std::get_if<packet_view>(&found)) take(*packet, arrival_ns);
   counts.add(found);
   if (const auto* const gone = std::get_if<skipped>(&found)) {
@@ -84,7 +84,7 @@ void stream_survey::take(const event& found, std::int64_t arrival_ns) {
   }
 }
 
-void stream_survey::take(packet_view packet, std::int64_t arrival_ns) {
+void packet_survey::take(packet_view packet, std::int64_t arrival_ns) {
   directions.take(packet);
   if (const auto fits = revolution_.add(packet)) ++(*fits ? crc_fits : crc_misfits);
   static_cast<void>(reader_.add(packet));
@@ -109,7 +109,7 @@ void stream_survey::take(packet_view packet, std::int64_t arrival_ns) {
   if (sample_size(layout_) == 3) compare_intensities(packet);
 }
 
-void stream_survey::compare_intensities(packet_view packet) {
+void packet_survey::compare_intensities(packet_view packet) {
   constexpr int near = 16;  // of an intensity that goes on
   for (std::size_t i = 1; i < packet.sample_count(); ++i) {
     const std::uint16_t last = packet.sample(i - 1);
@@ -123,14 +123,14 @@ void stream_survey::compare_intensities(packet_view packet) {
   }
 }
 
-double stream_survey::per_second(std::uint64_t count) const noexcept {
+double packet_survey::per_second(std::uint64_t count) const noexcept {
   if (zeros_.empty()) return 0.0;
   const double seconds =
       static_cast<double>(way_ns(zeros_.front().time_ns, zeros_.back().time_ns)) / 1e9;
   return seconds > 0.0 ? static_cast<double>(count) / seconds : 0.0;
 }
 
-bool stream_survey::is_steady() const {
+bool packet_survey::is_steady() const {
   constexpr std::size_t fewest = 3;
   constexpr double part = 0.02;
   if (zeros_.size() < fewest) return false;
@@ -144,7 +144,7 @@ bool stream_survey::is_steady() const {
   });
 }
 
-double stream_survey::reported_hz() const noexcept {
+double packet_survey::reported_hz() const noexcept {
   if (zero_packets == 0) return 0.0;
   return static_cast<double>(reported_dhz_) / 10.0 / static_cast<double>(zero_packets);
 }

@@ -36,13 +36,13 @@ class direction_survey {
 };
 
 /// *Single thread.*
-class stream_survey {
+class packet_survey {
  public:
   /// Samples by their range.
   enum zone : std::uint8_t { no_return, below_1_m, below_2_m, beyond };
   static constexpr std::size_t zones = 4;
 
-  explicit stream_survey(const model& which) : directions(which), layout_(which.samples.layout) {}
+  explicit packet_survey(const model& which) : directions(which), layout_(which.samples.layout) {}
 
   void take(const event& found, std::int64_t arrival_ns);
 

@@ -58,7 +58,7 @@ bool target(subject& of, step_result& into, user_action where) {
   const bool starts = of.link->start() >= 0;
   into.add("starts", starts);
   static_cast<void>(of.link->survey(spun_up_ns));
-  const stream_survey heard = of.link->survey(3'000 * ms);
+  const packet_survey heard = of.link->survey(3'000 * ms);
   of.link->stop();
   if (!starts) return false;
   if (where == user_action::place_near) of.target_degree = heard.directions.nearest();
