@@ -48,14 +48,13 @@ void change_signs::take(bytes input) noexcept {
 void change_signs::take_telnet(std::uint8_t byte) noexcept {
   if (telnet_.is_option) {
     telnet_.is_option = false;
+    ++(byte < 0x40 ? telnet_.negotiated : telnet_.single);  // the options of telnet are below
   } else if (telnet_.is_half) {
     telnet_.is_half = false;
     telnet_.is_option = byte >= 0xFB && byte <= 0xFE;
     if (byte == interpret) {
       ++telnet_.doubled;
-    } else if (telnet_.is_option) {
-      ++telnet_.negotiated;
-    } else {
+    } else if (!telnet_.is_option) {
       ++telnet_.single;
     }
   } else {
