@@ -171,9 +171,10 @@ class file_run {
                             "The packets are not those of " + one_of(model_) + ".");
     }
     const auto found = diagnosis_of(counts, measured_.tally().arrivals.bytes());
-    if (found) baud.find(*found);
+    const bool is_changed = survey_.change() != stream_change::none;
+    if (found) baud.find(is_changed ? diagnosis::changed_bytes : *found);
     if (found == diagnosis::unknown_bytes) baud.remark = arrived(survey_);
-    if (survey_.maker() != nullptr) baud.remark = survey_.finding();
+    if (survey_.maker() != nullptr || (found && is_changed)) baud.remark = survey_.finding();
     log_.report(std::move(baud));
     if (counts.packets > 0 && has_request(model_, request_kind::zero_angle) && !device_.zero) {
       stage_report answers{.stage = diagnostic_stage::answers};

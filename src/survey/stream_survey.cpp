@@ -131,7 +131,8 @@ std::string stream_survey::finding() const {
     return text;
   }
   if (echo() != echo_kind::none) return std::string(words_for(echo()));
-  return text() != text_kind::none ? words_for(text_) : words_for(change_);
+  if (text() == text_kind::none) return words_for(change_);
+  return layout_.has_packet() ? std::string() : words_for(text_);  // packets behind a boot text
 }
 
 }  // namespace g4lidar

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -114,6 +115,32 @@ class link_with_a_late_rest final : public forwarding_transport {
 
  private:
   std::int64_t rest_ns_ = never_ns;
+};
+
+/// What is sent comes back, with a text behind it: from a console, or, without a text, from a wire between both
+/// directions. No lidar is there.
+class echoing_link final : public forwarding_transport {
+ public:
+  echoing_link(std::unique_ptr<transport> inner, std::string prompt)
+      : forwarding_transport(std::move(inner)), prompt_(std::move(prompt)) {}
+  [[nodiscard]] result<void> write(bytes data, std::int64_t) noexcept override {
+    waiting_.insert(waiting_.end(), data.begin(), data.end());
+    waiting_.insert(waiting_.end(), prompt_.begin(), prompt_.end());
+    return {};
+  }
+  [[nodiscard]] result<received> read(std::span<std::uint8_t> out,
+                                      std::int64_t deadline_ns) noexcept override {
+    const auto got = inner().read(out, waiting_.empty() ? deadline_ns : now_ns());
+    if (!got) return got;
+    const std::size_t count = std::min(out.size(), waiting_.size());
+    std::copy_n(waiting_.begin(), count, out.begin());
+    waiting_.erase(waiting_.begin(), waiting_.begin() + static_cast<std::ptrdiff_t>(count));
+    return received{count, now_ns()};
+  }
+
+ private:
+  std::string prompt_;
+  std::vector<std::uint8_t> waiting_;
 };
 
 /// Some bytes precede the begin of each revolution.
