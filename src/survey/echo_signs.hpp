@@ -9,6 +9,7 @@
 
 #include "g4lidar/core/bytes.hpp"
 #include "g4lidar/core/command.hpp"
+#include "text_signs.hpp"
 
 namespace g4lidar {
 
@@ -29,11 +30,10 @@ class echo_signs {
   }
   void received(bytes data) noexcept {
     for (const std::uint8_t byte : data) {
-      const bool is_text = (byte >= ' ' && byte <= '~') || byte == '\r' || byte == '\n';
       if (is_echo(byte)) {
         ++echoed_;
       } else {
-        ++(is_text ? text_ : others_);
+        ++(is_of_text(byte) ? text_ : others_);
       }
       last_ = byte;
     }

@@ -6,10 +6,6 @@
 namespace g4lidar {
 namespace {
 
-bool is_blank(std::uint8_t byte) noexcept {
-  return byte == ' ' || byte == '\t' || byte == '\r' || byte == '\n';
-}
-bool is_printable(std::uint8_t byte) noexcept { return byte >= ' ' && byte <= '~'; }
 bool is_decimal_digit(std::uint8_t byte) noexcept { return byte >= '0' && byte <= '9'; }
 bool is_hex_digit(std::uint8_t byte) noexcept {
   return is_decimal_digit(byte) || (byte >= 'A' && byte <= 'F') || (byte >= 'a' && byte <= 'f');
@@ -27,7 +23,7 @@ bool ends_word(std::uint8_t byte) noexcept {
 void text_signs::take(bytes input) noexcept {
   for (const std::uint8_t byte : input) {
     ++count_;
-    if (is_printable(byte) || is_blank(byte)) ++characters_;
+    if (is_of_text(byte)) ++characters_;
     if (count_ <= 2) begin_ = begin_ << 8U | byte;
     if (byte == 'x' && last_ == '\\') ++escapes_;
     take_word_byte(byte);

@@ -9,6 +9,15 @@
 
 namespace g4lidar {
 
+/// Blanks and ends of lines.
+[[nodiscard]] constexpr bool is_blank(std::uint8_t byte) noexcept {
+  return byte == ' ' || byte == '\t' || byte == '\r' || byte == '\n';
+}
+/// Characters of ASCII that text consists of.
+[[nodiscard]] constexpr bool is_of_text(std::uint8_t byte) noexcept {
+  return is_blank(byte) || (byte > ' ' && byte <= '~');
+}
+
 /// What text contains.
 enum class text_kind : std::uint8_t {
   none,        ///< The bytes are not text.
