@@ -96,7 +96,10 @@ bool live_run::find_device() {
   stage_report baud{.stage = diagnostic_stage::baud_rate};
   const first_contact::state found = contact_.make(baud);
   const bool goes_on = found == first_contact::state::made;
-  if (link_.port().baud() != 0) {
+  // Without a packet or an answer at this rate it is only what the port was set to.
+  const bool is_rate =
+      goes_on || (found == first_contact::state::refused && !baud.measurements.empty());
+  if (is_rate && link_.port().baud() != 0) {
     baud.measurements.insert(baud.measurements.begin(), make_evidence("baud", link_.port().baud()));
   }
   if (goes_on) {

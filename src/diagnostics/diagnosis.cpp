@@ -64,6 +64,11 @@ constexpr std::array rows{
         "and without flow control; transfer files as binary. Over a slow network bytes may be "
         "lost: use a better connection.",
         {line_noise, bytes_dropped}),
+    row("no_lidar", fail,
+        "These are not the bytes of a lidar of this family: a device of another maker or kind has "
+        "sent them, or nothing comes back but what was sent.",
+        "If it is a lidar, use its own driver. Otherwise name the port of the lidar (`g4-dump "
+        "list` shows the ports), and check both wires between lidar and bridge."),
     row("unknown_bytes", fail,
         "Bytes arrive that are of no known kind: of another device, at a baud rate that was not "
         "tried, or damaged.",

@@ -105,6 +105,7 @@ class file_run {
         return take(item.data, item.time_ns);
       case recorded_item::kind::to_device:
         replies_.sent(item.data);
+        survey_.sent(item.data);
         if (is_stop(item.data)) await_speed();
         return;
       case recorded_item::kind::other:
@@ -161,7 +162,8 @@ class file_run {
     const bool has_packets = counts.packets > few_packets;
     if (!has_packets && find_other_source(baud, survey_)) {
       log_.report(std::move(baud));
-      return log_.skip_from(diagnostic_stage::answers, "These are not the bytes of a lidar.");
+      return log_.skip_from(diagnostic_stage::answers,
+                            "There are no packets of this family of lidars.");
     }
     if (find_other_layout(baud, survey_.layout(), model_)) {
       log_.report(std::move(baud));
@@ -169,8 +171,10 @@ class file_run {
                             "The packets are not those of " + one_of(model_) + ".");
     }
     const auto found = diagnosis_of(counts, measured_.tally().arrivals.bytes());
-    if (found) baud.find(*found);
+    const bool is_changed = survey_.change() != stream_change::none;
+    if (found) baud.find(is_changed ? diagnosis::changed_bytes : *found);
     if (found == diagnosis::unknown_bytes) baud.remark = arrived(survey_);
+    if (survey_.maker() != nullptr || (found && is_changed)) baud.remark = survey_.finding();
     log_.report(std::move(baud));
     if (counts.packets > 0 && has_request(model_, request_kind::zero_angle) && !device_.zero) {
       stage_report answers{.stage = diagnostic_stage::answers};

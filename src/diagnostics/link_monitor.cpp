@@ -62,8 +62,7 @@ void event_splitter::give(const event& found, const observer& to) {
 
 void event_splitter::look_for_text(bytes raw) {
   for (const std::uint8_t byte : raw) {
-    const bool is_letter = (byte >= 0x20 && byte < 0x7F) || byte == '\r' || byte == '\n';
-    letters_ = is_letter ? letters_ + 1 : 0;
+    letters_ = is_of_text(byte) ? letters_ + 1 : 0;
     if (letters_ == text_letters) {
       if (!in_text_) ++boots_;
       in_text_ = true;

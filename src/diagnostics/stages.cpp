@@ -211,10 +211,10 @@ std::string arrived(const stream_survey& heard) {
 bool find_other_source(stage_report& report, const stream_survey& seen) {
   std::string finding = seen.finding();
   if (finding.empty()) return false;
-  const bool is_another = seen.maker() != nullptr || seen.text() == text_kind::plain;
-  report.find(is_another ? diagnosis::other_device : diagnosis::changed_bytes);
+  report.find(seen.is_of_another() ? diagnosis::no_lidar : diagnosis::changed_bytes);
   const std::string all(seen.all().text());
-  if (seen.maker() == nullptr && !all.empty()) finding += " It begins with" + all.substr(1) + ".";
+  const bool is_clear = seen.maker() != nullptr || seen.echo() != echo_kind::none;
+  if (!is_clear && !all.empty()) finding += " It begins with" + all.substr(1) + ".";
   report.remark = std::move(finding);
   return true;
 }

@@ -103,7 +103,8 @@ void report_latency(stage_log& log, const stream_statistics& measured, std::uint
 [[nodiscard]] std::string usb_id_of(const port_info& port);
 /// "25 bytes like an answer of another length (A5 5A 15 00 00 00) arrived."; empty if there were none.
 [[nodiscard]] std::string arrived(const stream_survey& heard);
-/// What was examined is no stream of a lidar: of another maker, text, or changed on the way. Returns whether it is not.
+/// What was examined is no stream of a lidar: of another maker, text, an echo, or changed on the way. Returns whether it
+/// is not.
 bool find_other_source(stage_report& report, const stream_survey& seen);
 /// Whether the samples have a size that no lidar like `wanted` sends; then adds this to `report`.
 bool find_other_layout(stage_report& report, const layout_recogniser& seen, const model& wanted);

@@ -44,7 +44,7 @@ std::optional<error> refusal_of(const stream_survey& seen, std::string_view titl
   if (seen.layout().has_packet()) return std::nullopt;
   if (const other_maker* const other = seen.maker()) {
     return error(task::opening, problem::other_device,
-                 std::string(title).append(", ").append(other->product), 0,
+                 std::string(title).append(", ").append(with_driver(*other)), 0,
                  error_detail::other_maker);
   }
   if (seen.text() == text_kind::none) return std::nullopt;
@@ -66,7 +66,7 @@ std::string what_is(bytes data) {
   stream_survey seen;
   seen.received(data);
   seen.finish();
-  return seen.layout().has_packet() ? std::string() : seen.finding();
+  return seen.finding();
 }
 
 }  // namespace g4lidar

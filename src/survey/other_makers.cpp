@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <numeric>
 
+#include "g4lidar/core/packet.hpp"
+#include "g4lidar/core/response.hpp"
+
 namespace g4lidar {
 namespace {
 
@@ -125,6 +128,42 @@ std::size_t slamtec_sample(bytes data) noexcept {
   return is_sample ? size : 0;
 }
 
+/// The begin of a scan, and what only this maker sends behind it: a capsule of an express scan, or samples of five bytes.
+/// The answer itself may be one of a YDLIDAR.
+std::size_t slamtec_scan(bytes data) noexcept {
+  constexpr std::size_t head = 7;
+  constexpr std::size_t samples = 10;
+  if (data.size() <= head || !begins(data, response_start) || data[5] != 0x40) return 0;
+  const bytes rest = data.subspan(head);
+  const std::size_t size = data[2];
+  const bool is_known = data[3] == 0 && data[4] == 0;
+  if (!is_known || begins(rest, packet_start)) return 0;
+  const std::uint8_t type = data[6];
+  if (type == 0x81 && size == 5) {
+    std::size_t at = 0;
+    while (at < samples * size && slamtec_sample(rest.subspan(std::min(at, rest.size()))) != 0)
+      at += size;
+    return at == samples * size ? head : 0;
+  }
+  if ((type == 0x82 || type == 0x85) && size == 84) return short_capsule(rest) == 0 ? 0 : head;
+  return type == 0x84 && size == 132 && long_capsule(rest) != 0 ? head : 0;
+}
+
+/// A device information like that of a YDLIDAR, but with a serial number that is not of decimal digits. Another answer
+/// follows, or nothing: so no byte of it was lost.
+std::size_t slamtec_information(bytes data) noexcept {
+  constexpr std::array<std::uint8_t, 7> start{0xA5, 0x5A, 0x14, 0x00, 0x00, 0x00, 0x04};
+  constexpr std::size_t size = 27;
+  constexpr std::size_t digits = 16;
+  if (data.size() < size || !begins(data, start)) return 0;
+  if (data.size() > size && !begins(data.subspan(size), response_start)) return 0;
+  const bytes serial = data.subspan(size - digits, digits);
+  const auto above = [&](unsigned most) {
+    return std::count_if(serial.begin(), serial.end(), [&](unsigned each) { return each > most; });
+  };
+  return above(9) >= 12 && above('z') >= 2 ? size : 0;
+}
+
 std::size_t coin_greeting(bytes data) noexcept {
   constexpr std::array<std::uint8_t, 16> start{0xFA, 0xFA, 0xA5, 0x5A, 0x14, 0x00, 0xE3, 0x02,
                                                0x01, 'C',  'O',  'I',  'N',  '-',  'D',  '4'};
@@ -149,7 +188,7 @@ std::size_t nmea_sentence(bytes data) noexcept {
 constexpr std::string_view slamtec = "an RPLIDAR of Slamtec";
 constexpr std::string_view slamtec_driver = "sllidar_ros2";
 
-constexpr std::array<kind, 12> kinds{{
+constexpr std::array<kind, 14> kinds{{
     {{"an LD06, LD14, LD19 or STL of LDROBOT", "ldlidar_stl_ros2", "54 2C, the CRC is right"},
      ldrobot,
      with_checksum},
@@ -174,6 +213,8 @@ constexpr std::array<kind, 12> kinds{{
     {{slamtec, slamtec_driver, "standard scan, samples of 5 bytes"},
      slamtec_sample,
      without_checksum},
+    {{slamtec, slamtec_driver, "the begin of its scan"}, slamtec_scan, 1},
+    {{slamtec, slamtec_driver, "its device information"}, slamtec_information, 1},
     {{"a COIN-D4 (LDS-03)", "coin_d4_driver", "its greeting"}, coin_greeting, 1},
     {{"a receiver of satellite positions (NMEA)", "", "$, sentences of text"},
      nmea_sentence,
@@ -189,6 +230,12 @@ constexpr auto makers = [] {
 }  // namespace
 
 std::span<const other_maker> other_makers() noexcept { return makers; }
+
+std::string with_driver(const other_maker& of) {
+  std::string text(of.product);
+  if (!of.driver.empty()) text.append("; its driver is ").append(of.driver);
+  return text;
+}
 
 /// Looks for frames that begin before `until` in what is held.
 void maker_recogniser::look(std::size_t until) noexcept {

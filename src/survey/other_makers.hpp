@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <string_view>
 
 #include "g4lidar/core/bytes.hpp"
@@ -23,8 +24,12 @@ struct other_maker {
 /// All kinds that are recognised.
 [[nodiscard]] std::span<const other_maker> other_makers() noexcept;
 
+/// "an LD06, LD14, LD19 or STL of LDROBOT; its driver is ldlidar_stl_ros2". *Allocates.*
+[[nodiscard]] std::string with_driver(const other_maker& of);
+
 /// *Single thread, never allocates.* A maker is recognised after five frames of its kind in a row, each behind the
-/// other, if they have a checksum; after fifty if they have none. The greeting of a COIN-D4 is sufficient once.
+/// other, if they have a checksum; after fifty if they have none. The greeting of a COIN-D4, and an answer that only an RPLIDAR
+/// sends, are sufficient once.
 class maker_recogniser {
  public:
   /// Adds bytes of the stream, in order.

@@ -7,6 +7,8 @@
 #include <string>
 #include <variant>
 
+#include "change_signs.hpp"
+#include "echo_signs.hpp"
 #include "g4lidar/core/layout_recogniser.hpp"
 #include "g4lidar/core/stream_parser.hpp"
 #include "g4lidar/device_information.hpp"
@@ -19,13 +21,18 @@ namespace g4lidar {
 /// *Single thread.* Takes bytes as they come, and adds none of its own.
 class stream_survey {
  public:
-  void sent(bytes command) noexcept { all_.sent(command); }
+  void sent(bytes command) noexcept {
+    all_.sent(command);
+    echo_.sent(command);
+  }
   void received(bytes data) noexcept {
     all_.received(data);
     count_ += data.size();
     layout_.take(data);
     maker_.take(data);
     text_.take(data);
+    change_.take(data);
+    echo_.received(data);
     answers_.feed(data, [this](const event& each) {
       const auto* const reply = std::get_if<response_view>(&each);
       if (reply != nullptr && !device_) device_ = reply->as_device_info();
@@ -58,7 +65,15 @@ class stream_survey {
   /// All bytes, whether they are text, and how they were changed on the way.
   [[nodiscard]] const unrecognised_bytes& all() const noexcept { return all_; }
   [[nodiscard]] text_kind text() const noexcept { return text_.text(); }
-  [[nodiscard]] stream_change change() const noexcept { return text_.change(); }
+  [[nodiscard]] stream_change change() const noexcept {
+    return text_.is_text() ? stream_change::none : change_.change();
+  }
+  /// Whether what was sent comes back.
+  [[nodiscard]] echo_kind echo() const noexcept { return echo_.kind(); }
+  /// Whether these are bytes that no lidar has sent; else they may be those of a lidar, as they are or changed.
+  [[nodiscard]] bool is_of_another() const noexcept {
+    return maker() != nullptr || echo() != echo_kind::none || text() == text_kind::plain;
+  }
   /// Who or what it is, in sentences; empty: packets of a lidar, or not known. *Allocates.*
   [[nodiscard]] std::string finding() const;
 
@@ -66,6 +81,8 @@ class stream_survey {
   layout_recogniser layout_;
   maker_recogniser maker_;
   text_signs text_;
+  change_signs change_;
+  echo_signs echo_;
   unrecognised_bytes all_;
   stream_parser answers_{g4_format};  // an answer is found whatever the size of samples is
   std::optional<device_information> device_;

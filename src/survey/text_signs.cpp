@@ -1,20 +1,21 @@
 // SPDX-License-Identifier: MIT
 #include "text_signs.hpp"
 
+#include <string_view>
+
 namespace g4lidar {
 namespace {
 
-constexpr std::uint8_t interpret = 0xFF;  // begins each command of telnet
-constexpr std::uint8_t carriage_return = 0x0D;
-constexpr std::uint8_t line_feed = 0x0A;
-
-bool is_blank(std::uint8_t byte) noexcept {
-  return byte == ' ' || byte == '\t' || byte == carriage_return || byte == line_feed;
-}
-bool is_printable(std::uint8_t byte) noexcept { return byte >= ' ' && byte <= '~'; }
+bool is_decimal_digit(std::uint8_t byte) noexcept { return byte >= '0' && byte <= '9'; }
 bool is_hex_digit(std::uint8_t byte) noexcept {
-  return (byte >= '0' && byte <= '9') || (byte >= 'A' && byte <= 'F') ||
-         (byte >= 'a' && byte <= 'f');
+  return is_decimal_digit(byte) || (byte >= 'A' && byte <= 'F') || (byte >= 'a' && byte <= 'f');
+}
+unsigned digit_of(std::uint8_t byte) noexcept {
+  return is_decimal_digit(byte) ? byte - '0' : (byte | 0x20U) - 'a' + 10U;
+}
+bool ends_word(std::uint8_t byte) noexcept {
+  constexpr std::string_view marks = ",;[](){}";
+  return is_blank(byte) || marks.find(static_cast<char>(byte)) != std::string_view::npos;
 }
 
 }  // namespace
@@ -22,94 +23,104 @@ bool is_hex_digit(std::uint8_t byte) noexcept {
 void text_signs::take(bytes input) noexcept {
   for (const std::uint8_t byte : input) {
     ++count_;
-    ++each_[byte];
-    if (byte == line_feed && last_[0] == carriage_return) ++crlf_;
-    if (byte == 0xBD && last_[0] == 0xBF && last_[1] == 0xEF) ++replaced_;
-    if (option_ > 0) {
-      --option_;
-    } else if (is_half_) {
-      is_half_ = false;
-      const bool is_command = byte >= 0xFB && byte <= 0xFE;
-      doubled_ += byte == interpret ? 1 : 0;
-      negotiated_ += is_command ? 1 : 0;
-      single_ += byte != interpret && !is_command ? 1 : 0;
-      option_ = is_command ? 1 : 0;
-    } else {
-      is_half_ = byte == interpret;
-    }
+    if (is_of_text(byte)) ++characters_;
+    if (count_ <= 2) begin_ = begin_ << 8U | byte;
+    if (byte == 'x' && last_ == '\\') ++escapes_;
     take_word_byte(byte);
-    last_ = {byte, last_[0], last_[1]};
+    last_ = byte;
   }
 }
 
 void text_signs::take_word_byte(std::uint8_t byte) noexcept {
-  if (!is_blank(byte)) {
-    const bool is_colon = byte == ':' && word_size_ >= 7;
-    is_hex_word_ = is_hex_word_ && (is_hex_digit(byte) || is_colon);
-    word_size_ += is_colon ? 0 : 1;
+  if (!ends_word(byte)) {
+    // Bytes may have a colon or a hyphen between them.
+    const bool separates = (byte == ':' || byte == '-') && word_.size > 0;
+    word_.has_colon = byte == ':' && separates;
+    if (separates && word_.size == 2) return end_word();
+    if (separates) return;
+    if (word_.size == 0) word_.first = byte;
+    if (word_.size == 1) word_.second = byte;
+    ++word_.size;
+    word_.is_decimal = word_.is_decimal && is_decimal_digit(byte);
+    if (word_.is_decimal && word_.number < 1000) word_.number = word_.number * 10 + digit_of(byte);
+    const bool is_x = byte == 'x' && word_.size == 2 && word_.first == '0';
+    if (is_x) return;
+    word_.is_hex = word_.is_hex && is_hex_digit(byte);
+    if (word_.is_hex) word_.value = word_.value << 4U | digit_of(byte);
     return;
   }
-  if (word_size_ > 0) end_word();
-  if (byte == line_feed) {
-    ++lines_;
-    is_first_word_ = true;
-  }
+  if (word_.size > 0) end_word();
+  if (byte == '\n') is_first_word_ = true;
+}
+
+/// At least four digits, first in its line, and larger than the one before: as in dumps.
+bool text_signs::is_offset() const noexcept {
+  const bool has_size = word_.size >= 4 && word_.size <= 16;
+  return is_first_word_ && word_.is_hex && has_size && word_.second != 'x' &&
+         (offsets_ == 0 || word_.value > offset_);
+}
+
+text_signs::word_counts text_signs::with_last() const noexcept {
+  word_counts all = words_;
+  const auto& [size, is_hex, is_decimal, has_colon, first, second, value, number] = word_;
+  const bool is_c = is_hex && second == 'x' && size >= 3;
+  const bool is_plain_hex = is_hex && second != 'x' && size > 0 && size % 2 == 0;
+  all.all += size > 0 ? 1 : 0;
+  all.hex += is_plain_hex ? 1 : 0;
+  all.of_one_byte += is_plain_hex && size == 2 ? 1 : 0;
+  all.of_two_bytes += is_plain_hex && size == 4 ? 1 : 0;
+  all.c_numbers += is_c && size <= 4 ? 1 : 0;
+  all.decimals += is_decimal && size > 0 && number < 256 ? 1 : 0;
+  all.columns += size > 0 && (first == '|' || first == '>') ? 1 : 0;
+  return all;
 }
 
 void text_signs::end_word() noexcept {
-  constexpr unsigned offset_digits = 7;
-  if (is_first_word_ && is_hex_word_ && word_size_ >= offset_digits && word_size_ <= 8) {
-    ++offsets_;
+  const bool is_star = is_first_word_ && word_.size == 1 && word_.first == '*';
+  if (is_star) {
+    ++stars_;
+  } else if (is_offset()) {
+    if (offsets_++ == 0) begins_at_0_ = word_.value == 0;
+    colons_ += word_.has_colon ? 1 : 0;
+    offset_ = word_.value;
   } else {
-    ++words_;
-    if (is_hex_word_ && word_size_ % 2 == 0) ++hex_words_;
+    words_ = with_last();
   }
-  word_size_ = 0;
-  is_hex_word_ = true;
+  lines_ += is_first_word_ && !is_star ? 1 : 0;
+  word_ = {};
   is_first_word_ = false;
 }
 
 bool text_signs::is_text() const noexcept {
   constexpr std::uint64_t fewest = 16;
-  std::uint64_t characters = 0;
-  for (unsigned byte = 0; byte < each_.size(); ++byte) {
-    const auto value = static_cast<std::uint8_t>(byte);
-    if (is_printable(value) || is_blank(value)) characters += each_[byte];
-  }
-  return count_ >= fewest && characters >= count_ - count_ / 50;
+  return count_ >= fewest && characters_ >= count_ - count_ / 50;
 }
 
 text_kind text_signs::text() const noexcept {
   if (!is_text()) return text_kind::none;
+  const word_counts words = with_last();
+  const std::uint64_t fewest = begins_at_0_ ? 2 : 4;  // of a part, somewhere in it
+  const bool has_offsets = offsets_ >= fewest && 10 * offsets_ >= 9 * lines_;
   // A dump has its characters behind the bytes.
-  const bool has_offsets = offsets_ >= 2 && 10 * offsets_ >= 9 * lines_;
-  if (has_offsets && 2 * hex_words_ >= words_) return text_kind::hexdump;
-  const bool has_digits = count_ > 0 && words_ > 0 ? 20 * hex_words_ >= 19 * words_ : is_hex_word_;
-  return has_digits ? text_kind::hex : text_kind::plain;
-}
-
-// In the stream of a lidar each of these bytes is about one in 256 or more frequent.
-stream_change text_signs::change() const noexcept {
-  constexpr std::uint64_t few = 8;
-  if (is_text()) return stream_change::none;
-  const bool has_doubled = doubled_ >= few && 16 * single_ <= doubled_;
-  if (negotiated_ > 0 && single_ == 0 && doubled_ + negotiated_ >= 2 && has_doubled)
-    return stream_change::telnet;
-  if (negotiated_ >= 3 && single_ == 0) return stream_change::telnet;
-  if (replaced_ >= few && 8 * replaced_ >= count_of(0xBF)) {
-    std::uint64_t others = 0;
-    for (unsigned byte = 0x80; byte < 0x100; ++byte) {
-      if (byte != 0xEF && byte != 0xBF && byte != 0xBD) others += each_[byte];
-    }
-    if (8 * others <= replaced_) return stream_change::utf8;
+  if (has_offsets || words.columns >= 2) {
+    if (2 * words.of_one_byte >= words.all && colons_ == 0) return text_kind::byte_dump;
+    const bool is_xxd = 10 * colons_ >= 9 * offsets_ && has_offsets &&
+                        2 * (words.of_one_byte + words.of_two_bytes) >= words.all;
+    if (is_xxd) return text_kind::xxd;
+    if (has_offsets) return text_kind::other_dump;
   }
-  if (count_of(line_feed) >= few && crlf_ == count_of(line_feed)) return stream_change::crlf;
-  constexpr std::uint64_t enough = 8'192;
-  const std::uint64_t taken =
-      count_of(0x03) + count_of(0x04) + count_of(carriage_return) + count_of(0x11) + count_of(0x13);
-  if (count_ >= enough && taken == 0 && count_of(line_feed) >= few)
-    return stream_change::cooked_line;
-  return stream_change::none;
+  const auto are_nearly_all = [&](std::uint64_t some) {
+    return some > 0 && 20 * some >= 19 * words.all;
+  };
+  if (are_nearly_all(words.hex)) return text_kind::hex;
+  if (10 * escapes_ >= count_) {
+    constexpr unsigned b = 'b' << 8U;
+    return begin_ == (b | '\'') || begin_ == (b | '"') ? text_kind::python : text_kind::escapes;
+  }
+  constexpr std::uint64_t enough = 8;
+  if (words.c_numbers >= enough && 10 * words.c_numbers >= 8 * words.all) return text_kind::c_array;
+  if (words.decimals >= enough && are_nearly_all(words.decimals)) return text_kind::numbers;
+  return text_kind::plain;
 }
 
 }  // namespace g4lidar

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Signs in a stream of bytes that it is text, went through something made for text, or came through telnet.
+// Signs in a stream of bytes that it is text, and in which form it shows other bytes.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 
@@ -10,21 +9,27 @@
 
 namespace g4lidar {
 
+/// Blanks and ends of lines.
+[[nodiscard]] constexpr bool is_blank(std::uint8_t byte) noexcept {
+  return byte == ' ' || byte == '\t' || byte == '\r' || byte == '\n';
+}
+/// Characters of ASCII that text consists of.
+[[nodiscard]] constexpr bool is_of_text(std::uint8_t byte) noexcept {
+  return is_blank(byte) || (byte > ' ' && byte <= '~');
+}
+
 /// What text contains.
 enum class text_kind : std::uint8_t {
-  none,     ///< The bytes are not text.
-  plain,    ///< Any text.
-  hex,      ///< Bytes as two hexadecimal digits each: "AA 55 00 28".
-  hexdump,  ///< Lines with an offset and such bytes, as hexdump, xxd and od -x write them.
-};
-
-/// What something between the lidar and this program has done to the bytes.
-enum class stream_change : std::uint8_t {
-  none,
-  telnet,       ///< Negotiation of telnet (RFC 854), and each FF doubled.
-  crlf,         ///< A 0D was inserted before each 0A, by a transfer of text.
-  utf8,         ///< Bytes above 7F were replaced by EF BF BD, as programs do that expect UTF-8.
-  cooked_line,  ///< Bytes are missing that a terminal line in its usual mode takes: 03, 04, 0D, 11, 13.
+  none,        ///< The bytes are not text.
+  plain,       ///< Any text.
+  hex,         ///< Bytes as two hexadecimal digits each: "AA 55 00 28", "aa:55", "aa550028".
+  xxd,         ///< Lines of xxd: an offset and a colon, words of one or two bytes, characters.
+  byte_dump,   ///< The same with single bytes and without a colon: of hexdump -C, or of od -t x1.
+  other_dump,  ///< Lines with offsets, and words in another form: of hexdump, od, or od -c.
+  c_array,     ///< Numbers of C: "0xAA, 0x55".
+  python,      ///< A literal of Python: "b'\xaaU\x00('".
+  escapes,     ///< The same with something else around it: "\xaa\x55".
+  numbers,     ///< A list of decimal numbers up to 255: "[170, 85, 0, 40]".
 };
 
 /// *Single thread, never allocates.*
@@ -37,33 +42,50 @@ class text_signs {
   /// Whether nearly all bytes are printable characters and line ends; false below 16 bytes.
   [[nodiscard]] bool is_text() const noexcept;
   [[nodiscard]] text_kind text() const noexcept;
-  /// What has changed bytes that are not text. A stream of some kilobytes shows it.
-  [[nodiscard]] stream_change change() const noexcept;
+  /// Whether a dump leaves equal lines out, and has "*" for them.
+  [[nodiscard]] bool leaves_out() const noexcept { return stars_ > 0; }
 
  private:
-  [[nodiscard]] std::uint64_t count_of(unsigned byte) const noexcept { return each_[byte]; }
+  /// What is between blanks, commas and brackets.
+  struct word {
+    unsigned size = 0;
+    bool is_hex = true;
+    bool is_decimal = true;
+    bool has_colon = false;
+    std::uint8_t first = 0;
+    std::uint8_t second = 0;
+    std::uint64_t value = 0;  // of its hexadecimal digits
+    unsigned number = 0;      // of its decimal digits
+  };
+  struct word_counts {
+    std::uint64_t all = 0;  // but for offsets
+    std::uint64_t hex = 0;  // of two digits, or of a multiple
+    std::uint64_t of_one_byte = 0;
+    std::uint64_t of_two_bytes = 0;
+    std::uint64_t c_numbers = 0;
+    std::uint64_t decimals = 0;
+    std::uint64_t columns = 0;  // characters behind the bytes: "|...|", ">...<"
+  };
+
   void take_word_byte(std::uint8_t byte) noexcept;
   void end_word() noexcept;
+  [[nodiscard]] bool is_offset() const noexcept;
+  [[nodiscard]] word_counts with_last() const noexcept;
 
   std::uint64_t count_ = 0;
-  std::array<std::uint64_t, 256> each_{};
-  std::array<std::uint8_t, 3> last_{};  // the newest first
-  std::uint64_t crlf_ = 0;              // 0A behind 0D
-  std::uint64_t replaced_ = 0;          // EF BF BD
-  std::uint64_t doubled_ = 0;           // pairs of FF
-  std::uint64_t single_ = 0;            // FF before something else, but for negotiation
-  std::uint64_t negotiated_ = 0;        // FF, FB to FE, and a byte
-  bool is_half_ = false;                // one FF of a pair was seen
-  unsigned option_ = 0;                 // the byte of a negotiation that follows
-  // Words of text: what is between blanks.
-  unsigned word_size_ = 0;
-  bool is_hex_word_ = true;
-  bool is_first_word_ = true;    // of its line
-  std::uint64_t words_ = 0;      // but for offsets
-  std::uint64_t hex_words_ = 0;  // of two digits, or of a multiple
-  std::uint64_t offsets_ =
-      0;  // words of at least seven digits, maybe with a colon, first in their line
-  std::uint64_t lines_ = 0;
+  std::uint64_t characters_ = 0;
+  std::uint64_t escapes_ = 0;  // "\x"
+  unsigned begin_ = 0;         // the first two characters
+  std::uint8_t last_ = 0;
+  word word_;
+  word_counts words_;
+  bool is_first_word_ = true;  // of its line
+  std::uint64_t lines_ = 0;    // with words
+  std::uint64_t stars_ = 0;    // lines that are "*"
+  std::uint64_t offsets_ = 0;  // first in their line, each larger than the one before
+  std::uint64_t colons_ = 0;   // behind offsets
+  std::uint64_t offset_ = 0;   // the last one
+  bool begins_at_0_ = false;
 };
 
 }  // namespace g4lidar

@@ -12,6 +12,7 @@
 #include "g4lidar/core/bytes.hpp"
 #include "g4lidar/core/packet.hpp"
 #include "g4lidar/core/response.hpp"
+#include "text_signs.hpp"
 
 namespace g4lidar {
 
@@ -92,11 +93,8 @@ class unrecognised_bytes {
     };
     if (begins_with(response_start)) return " like an answer of another length";
     if (begins_with(packet_start)) return " like damaged packets";
-    const auto is_text = [](std::uint8_t byte) {
-      return (byte >= 0x20 && byte < 0x7F) || byte == '\r' || byte == '\n';
-    };
     const bool is_long = here.size() > 3;
-    return is_long && std::ranges::all_of(here, is_text) ? " of text" : "";
+    return is_long && std::ranges::all_of(here, is_of_text) ? " of text" : "";
   }
 
   beginning sent_;

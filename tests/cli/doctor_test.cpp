@@ -145,7 +145,7 @@ TEST_F(Doctor, ExaminesRawBytes) {
   cli::write_file(path("a_file"), "no bytes of a lidar");
   const outcome other = examine(path("a_file"));
   EXPECT_EQ(other.code, 7);
-  EXPECT_THAT(diagnoses_of(stages_of(other)), Contains("other_device")) << other.out;
+  EXPECT_THAT(diagnoses_of(stages_of(other)), Contains("no_lidar")) << other.out;
   EXPECT_THAT(other.out, HasSubstr("This is text, not the packets of a lidar."));
   const outcome none = examine("file:" + path("nothing"));
   EXPECT_EQ(none.code, 10);

@@ -14,6 +14,7 @@
 #include <string_view>
 #include <vector>
 
+#include "g4lidar/core/model.hpp"
 #include "g4lidar/sim/device_options.hpp"
 #include "program.hpp"
 

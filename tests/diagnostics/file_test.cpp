@@ -93,6 +93,16 @@ std::string with_before(const std::string& all, char what, std::string_view adde
   return made;
 }
 
+/// As from a terminal line in its usual mode, with signals.
+std::string without_line_controls(const std::string& all) {
+  std::string made;
+  for (const char each : all) {
+    if (each == '\x03' || each == '\x11' || each == '\x13') continue;
+    made += each == '\r' ? '\n' : each;
+  }
+  return made;
+}
+
 TEST(Bytes, ThatWereChangedOnTheWay_AreNoFaultOfTheLine) {
   struct change {
     std::string content;
@@ -108,7 +118,8 @@ TEST(Bytes, ThatWereChangedOnTheWay_AreNoFaultOfTheLine) {
   for (const auto& [content, remark] :
        {change{with_before(all, '\n', "\r"), "Each 0A has a 0D before it"},
         change{"\xFF\xFB\x01\xFF\xFD\x03" + with_before(all, '\xFF', "\xFF"), "speaks telnet"},
-        change{hex, "`xxd -r -p`"}}) {
+        change{without_line_controls(all), "No 03, 0D, 11 and 13 arrived"},
+        change{hex, "`xxd -r -p FILE NEW`"}}) {
     const examined done = in_file(content, &g4_model);
     EXPECT_EQ(done.diagnoses(), "changed_bytes") << done;
     std::string remarks;
@@ -127,8 +138,10 @@ TEST(Bytes, OfAnotherMakerAreNamed) {
   for (int i = 0; i < 20; ++i)
     positions += "$GNGGA,023610.00,4004.7,N,11614.2,E,1,12,0.9,60.1,M,-9.0,M,,*58\r\n";
   const examined done = in_file(positions);
-  EXPECT_EQ(done.diagnoses(), "other_device") << done;
+  EXPECT_EQ(done.diagnoses(), "no_lidar") << done;
   EXPECT_NE(done.at(diagnostic_stage::baud_rate).remark.find("NMEA"), std::string::npos) << done;
+  EXPECT_EQ(done.at(diagnostic_stage::answers).remark,
+            "There are no packets of this family of lidars.");
 }
 
 TEST(Bytes, OfAnotherRateOrModelAreFound) {

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -114,6 +115,59 @@ class link_with_a_late_rest final : public forwarding_transport {
 
  private:
   std::int64_t rest_ns_ = never_ns;
+};
+
+/// What is sent comes back, with a text behind it: from a console, or, without a text, from a wire between both
+/// directions. No lidar is there.
+class echoing_link final : public forwarding_transport {
+ public:
+  echoing_link(std::unique_ptr<transport> inner, std::string prompt)
+      : forwarding_transport(std::move(inner)), prompt_(std::move(prompt)) {}
+  [[nodiscard]] result<void> write(bytes data, std::int64_t) noexcept override {
+    waiting_.insert(waiting_.end(), data.begin(), data.end());
+    waiting_.insert(waiting_.end(), prompt_.begin(), prompt_.end());
+    return {};
+  }
+  [[nodiscard]] result<received> read(std::span<std::uint8_t> out,
+                                      std::int64_t deadline_ns) noexcept override {
+    const auto got = inner().read(out, waiting_.empty() ? deadline_ns : now_ns());
+    if (!got) return got;
+    const std::size_t count = std::min(out.size(), waiting_.size());
+    std::copy_n(waiting_.begin(), count, out.begin());
+    waiting_.erase(waiting_.begin(), waiting_.begin() + static_cast<std::ptrdiff_t>(count));
+    return received{count, now_ns()};
+  }
+
+ private:
+  std::string prompt_;
+  std::vector<std::uint8_t> waiting_;
+};
+
+/// An XV-11 at 115200 baud: frames with a checksum. Other bytes at other rates. It reads nothing.
+class other_makers_link final : public forwarding_transport {
+ public:
+  using forwarding_transport::forwarding_transport;
+  [[nodiscard]] result<void> write(bytes, std::int64_t) noexcept override { return {}; }
+  [[nodiscard]] result<received> read(std::span<std::uint8_t> out,
+                                      std::int64_t deadline_ns) noexcept override {
+    const std::int64_t until_ns = std::min(deadline_ns, now_ns() + 2'000'000);
+    const auto got = inner().read(out, until_ns);
+    if (!got) return got;
+    std::array<std::uint8_t, 22> frame{
+        0xFA, static_cast<std::uint8_t>(0xA0 + number_++ % 90), 0x00, 0x4B, 0xE8, 0x03, 0xC8, 0x00};
+    std::uint32_t sum = 0;
+    for (std::size_t i = 0; i < 20; i += 2) sum = 2 * sum + frame[i] + 256U * frame[i + 1];
+    sum = (sum % 32'768 + sum / 32'768) % 32'768;
+    frame[20] = static_cast<std::uint8_t>(sum % 256);
+    frame[21] = static_cast<std::uint8_t>(sum / 256);
+    if (baud() != 115'200) frame.fill(0xF8);
+    const std::size_t count = std::min(out.size(), frame.size());
+    std::copy_n(frame.begin(), count, out.begin());
+    return received{count, now_ns()};
+  }
+
+ private:
+  unsigned number_ = 0;
 };
 
 /// Some bytes precede the begin of each revolution.

@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <cstdint>
 #include <memory>
+#include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "diagnostics/doctor_bench.hpp"
+#include "diagnostics/odd_links.hpp"
 #include "g4lidar/core/model.hpp"
 #include "g4lidar/sim/device_options.hpp"
 
@@ -47,6 +49,17 @@ sim::device_options x2_with(std::uint16_t rate_hz, std::uint16_t frequency_chz) 
       std::max(frequency_chz, options.scanner.format.max_frequency_chz);
   options.highest_frequency_chz = options.scanner.format.max_frequency_chz;
   return options;
+}
+
+// The rate to which the port happens to be set is not a measurement.
+TEST(DoctorOfOwners, ALidarOfAnotherMakerHasNoMeasuredRate) {
+  sim::device simulated(sim::built_in_world(), device_of("g4"));
+  sim::virtual_clock clock;
+  const examined done = examine(simulated, clock, {}, wrap_in<other_makers_link>());
+  const stage_report& baud = done.at(diagnostic_stage::baud_rate);
+  EXPECT_EQ(baud.outcome, stage_verdict::fail) << done;
+  EXPECT_NE(baud.remark.find("an XV-11 of Neato"), std::string::npos) << done;
+  for (const evidence& each : baud.measurements) EXPECT_NE(each.name, "baud") << done;
 }
 
 TEST(DoctorOfOwners, AnX2WithAnotherRate_IsThisX2) {

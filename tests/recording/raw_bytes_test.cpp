@@ -174,13 +174,16 @@ TEST_F(RawBytes, OfNoLidar_AreNamedWhereTheyAreOpened) {
   EXPECT_TRUE(open_with(std::string(4096, '\x17'), nullptr)) << "unknown bytes";
 }
 
-TEST(WhatIs, StatesWhatBytesAreThatAreNoPackets) {
+TEST(WhatIs, StatesWhatBytesAre_BesidePacketsToo) {
   const auto what = [](const std::string& data) {
     return what_is({reinterpret_cast<const std::uint8_t*>(data.data()), data.size()});
   };
   EXPECT_THAT(what("This is no lidar but a shell.\n"), HasSubstr("This is text"));
   EXPECT_THAT(what(satellite_sentences()), HasSubstr("satellite positions"));
   EXPECT_EQ(what("This is no lidar but a shell.\n" + packet_of(9)), "");
+  EXPECT_THAT(what("\xFA\xFA\xA5\x5A\x14" + std::string(1, '\0') + "\xE3\x02\x01" + "COIN-D4" +
+                   packet_of(9)),
+              HasSubstr("COIN-D4"));
   EXPECT_EQ(what({}), "");
 }
 

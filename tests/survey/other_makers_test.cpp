@@ -188,6 +188,65 @@ TEST(OtherMakers, TheGreetingOfACoinD4IsSufficient) {
   EXPECT_EQ(recognised(all), "a COIN-D4 (LDS-03)");
 }
 
+const byte_list scan_begin{0xA5, 0x5A, 0x05, 0x00, 0x00, 0x40, 0x81};
+
+byte_list after(byte_list head, const byte_list& more) {
+  append(head, more);
+  return head;
+}
+
+/// The device information of an RPLIDAR: its model, firmware, hardware, and 16 bytes of a serial number.
+byte_list slamtec_information() {
+  return {0xA5, 0x5A, 0x14, 0x00, 0x00, 0x00, 0x04, 0x18, 0x1D, 0x01, 0x07, 0x8D, 0x2C, 0xF3,
+          0xF5, 0xC1, 0xE3, 0x9E, 0xC3, 0xA5, 0xE4, 0x9C, 0xF0, 0xFA, 0x2B, 0x49, 0x11};
+}
+
+TEST(OtherMakers, AnRplidarIsNamedByTheBeginOfItsScan) {
+  byte_list samples;
+  for (unsigned i = 1; i <= 11; ++i) append(samples, standard(i));
+  EXPECT_EQ(recognised(after(scan_begin, samples)), "an RPLIDAR of Slamtec");
+  const byte_list few(samples.begin(), samples.begin() + 30);
+  EXPECT_EQ(recognised(after(scan_begin, few)), "");
+  EXPECT_EQ(recognised(after({0xA5, 0x5A, 0x54, 0x00, 0x00, 0x40, 0x82}, express(1))),
+            "an RPLIDAR of Slamtec");
+  EXPECT_EQ(recognised(after({0xA5, 0x5A, 0x54, 0x00, 0x00, 0x40, 0x85}, express(1))),
+            "an RPLIDAR of Slamtec");
+  EXPECT_EQ(recognised(after({0xA5, 0x5A, 0x84, 0x00, 0x00, 0x40, 0x84}, ultra(1))),
+            "an RPLIDAR of Slamtec");
+  byte_list damaged = express(1);
+  damaged[10] ^= 1U;
+  EXPECT_EQ(recognised(after({0xA5, 0x5A, 0x54, 0x00, 0x00, 0x40, 0x82}, damaged)), "");
+}
+
+// A YDLIDAR has decimal digits there. Both say the same of their health, and of the begin of a scan.
+TEST(OtherMakers, AnRplidarIsNamedByASerialNumberThatIsNotOfDigits) {
+  const byte_list health{0xA5, 0x5A, 0x03, 0x00, 0x00, 0x00, 0x06, 0x00, 0x00, 0x00};
+  EXPECT_EQ(recognised(slamtec_information()), "an RPLIDAR of Slamtec");
+  EXPECT_EQ(recognised(after(slamtec_information(), health)), "an RPLIDAR of Slamtec");
+  EXPECT_EQ(recognised(after(health, scan_begin)), "");
+  // The example of the manual of a G4.
+  const byte_list ours{0xA5, 0x5A, 0x14, 0x00, 0x00, 0x00, 0x04, 0x05, 0x02,
+                       0x03, 0x03, 0x02, 0x00, 0x02, 0x01, 0x01, 0x00, 0x01,
+                       0x00, 0x00, 0x00, 0x00, 0x07, 0x00, 0x00, 0x07, 0x03};
+  EXPECT_EQ(recognised(after(ours, health)), "");
+  // A part of it was lost, and packets follow.
+  byte_list cut(ours.begin(), ours.begin() + 12);
+  for (int i = 0; i < 40; ++i) append(cut, {0x94, 0x1F, 0x98, 0x1F});
+  EXPECT_EQ(recognised(cut), "");
+}
+
+TEST(OtherMakers, AreNamedWithTheirDriver) {
+  const auto with = [](std::string_view product) {
+    for (const other_maker& each : other_makers()) {
+      if (each.product == product) return with_driver(each);
+    }
+    return std::string();
+  };
+  EXPECT_EQ(with("a Delta of 3irobotix"), "a Delta of 3irobotix; its driver is delta_lidar");
+  EXPECT_EQ(with("a receiver of satellite positions (NMEA)"),
+            "a receiver of satellite positions (NMEA)");
+}
+
 // 10^7 bytes; more than 10^8 in the nightly.
 TEST(OtherMakers, NoneIsNamedInRandomBytes) {
   for (const int seed : test::seeds(10)) {

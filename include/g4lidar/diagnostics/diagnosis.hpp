@@ -55,6 +55,7 @@ enum class diagnosis : std::uint8_t {
   interference,
   bad_baud_rate,
   changed_bytes,
+  no_lidar,
   unknown_bytes,
   wrong_baud_rate,
   silent,

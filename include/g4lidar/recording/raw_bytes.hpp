@@ -54,8 +54,8 @@ namespace g4lidar {
 /// The model that recognised_in() finds. Valid forever. Allocates.
 [[nodiscard]] G4LIDAR_API const model& model_of_bytes(const std::string& path);
 
-/// What `data` is, where it contains no packet of any model: text, frames of another maker, bytes that were changed on
-/// the way. Sentences for the user; empty: not known. Allocates.
+/// What `data` is: text, frames of another maker, bytes that were changed on the way, also where some packets are left.
+/// Sentences for the user; empty: packets of a lidar, or not known. Allocates.
 [[nodiscard]] G4LIDAR_API std::string what_is(bytes data);
 
 /// The topic under which recordings keep the bytes of the lidar. A file in MCAP with these messages,

@@ -217,7 +217,8 @@ class point_run {
                     *model_, common_.expected.zero);
     std::vector<std::uint8_t> beginning;
     pump(in, out, [&](std::span<const std::uint8_t> got) {
-      if (way.bytes() == 0) beginning.assign(got.begin(), got.end());
+      const auto more = got.first(std::min(got.size(), beginning_bytes - beginning.size()));
+      beginning.insert(beginning.end(), more.begin(), more.end());
       way.take(got);
     });
     if (!writer_->is_done()) way.finish();  // else what is left was not asked for
@@ -225,7 +226,7 @@ class point_run {
       logger::write(json_line(counts_as_json(way.counts(), way.bytes())));
     } else if (way.bytes() > 0) {
       logger::info(stats_in_words(way.counts(), way.bytes()));
-      logger::info(warning_about(way.counts(), way.bytes()));
+      logger::info(warning_about(way.counts(), way.bytes(), beginning));
       if (way.lacks_zero()) report_missing_zero(*model_);
       report_contradictions({.model = model_, .number = way.other_number()});
     }

@@ -248,6 +248,9 @@ int to_recording(const convert_options& options) {
   if (result.lidar.stream.packets == 0 && interrupt() == 0) refuse_without_packets(options, result);
   out.commit();
   report_counts(result.lidar);
+  const std::string path = path_of_source(options.in());
+  if (path != "-" && kind_of_source(options.in()) == source_kind::raw_bytes)
+    logger::info(warning_about(result.lidar.stream, result.lidar.bytes, beginning_of(path)));
   logger::info(describe(result.damage));
   report_recorded(result, job.title);
   return exit_code_now();

@@ -97,7 +97,7 @@ nlohmann::ordered_json json_of_report(const stage_report& report) {
 
 /// For all other diagnoses the exit code is unhealthy.
 using failure_code = std::pair<diagnosis, exit_code>;
-constexpr std::array<failure_code, 17> failure_codes{{
+constexpr std::array<failure_code, 18> failure_codes{{
     {diagnosis::no_port, exit_code::no_device},
     {diagnosis::several_ports, exit_code::no_device},
     {diagnosis::not_serial, exit_code::no_device},
@@ -111,6 +111,7 @@ constexpr std::array<failure_code, 17> failure_codes{{
     {diagnosis::unknown_bytes, exit_code::silent},
     {diagnosis::wrong_baud_rate, exit_code::silent},
     {diagnosis::silent, exit_code::silent},
+    {diagnosis::no_lidar, exit_code::not_a_g4},
     {diagnosis::other_device, exit_code::not_a_g4},
     {diagnosis::one_way_lidar, exit_code::not_a_g4},
     {diagnosis::unplugged, exit_code::lost},

@@ -229,7 +229,7 @@ nlohmann::ordered_json counts_as_json(const stream_counts& counts, std::uint64_t
 }
 
 std::vector<std::uint8_t> beginning_of(const std::string& path) {
-  std::vector<std::uint8_t> first(std::size_t{64} << 10U);
+  std::vector<std::uint8_t> first(beginning_bytes);
   input in(path, {});
   first.resize(in.is_file() ? in.read(first) : 0);
   return first;
@@ -263,7 +263,10 @@ std::string why_no_packet(const stream_counts& counts, std::uint64_t bytes,
                      counts.responses == 1 ? "a response" : "responses");
 }
 
-std::string warning_about(const stream_counts& counts, std::uint64_t bytes) {
+std::string warning_about(const stream_counts& counts, std::uint64_t bytes,
+                          std::span<const std::uint8_t> beginning) {
+  if (counts.packets == 0) return {};
+  if (const std::string known = g4lidar::what_is(beginning); !known.empty()) return known + "\n";
   if (diagnosis_of(counts, bytes) != diagnosis::line_noise) return {};
   return "More than half of the bytes belong to no packet. " + baud_question() + "\n";
 }

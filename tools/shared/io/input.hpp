@@ -91,7 +91,9 @@ g4lidar::recording_reader read_items(
 [[nodiscard]] nlohmann::ordered_json counts_as_json(const g4lidar::stream_counts& counts,
                                                     std::uint64_t bytes);
 
-/// The first 64 KiB of the file at `path`; nothing of what is no regular file, or cannot be read.
+/// Bytes of a beginning: enough to see how a terminal has changed them.
+inline constexpr std::size_t beginning_bytes = std::size_t{128} << 10U;
+/// The beginning of the file at `path`; nothing of what is no regular file, or cannot be read.
 [[nodiscard]] std::vector<std::uint8_t> beginning_of(const std::string& path);
 
 /// Why `bytes` bytes of `title`, which begin with `beginning`, contain no packet, and what to do: whole sentences.
@@ -99,7 +101,9 @@ g4lidar::recording_reader read_items(
                                         std::span<const std::uint8_t> beginning,
                                         const std::string& title);
 
-/// A warning if most bytes of an input belong to no packet; else empty.
-[[nodiscard]] std::string warning_about(const g4lidar::stream_counts& counts, std::uint64_t bytes);
+/// A warning that names what else than packets an input with this beginning contains, or else that most of its bytes
+/// belong to no packet; empty if there is no reason. Nothing without packets: see why_no_packet().
+[[nodiscard]] std::string warning_about(const g4lidar::stream_counts& counts, std::uint64_t bytes,
+                                        std::span<const std::uint8_t> beginning);
 
 }  // namespace g4_tool
