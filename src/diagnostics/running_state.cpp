@@ -30,8 +30,9 @@ std::optional<diagnosis> diagnosis_of(const error& why) {
   }
 }
 
-/// Adds the diagnoses of this stage.
-void add_those_of(stage_report& report, const std::vector<diagnosis>& found) {
+/// Adds the diagnoses of this stage; `detail` of the error that ended the use.
+void add_those_of(stage_report& report, const std::vector<diagnosis>& found, error_detail detail) {
+  if (report.detail == error_detail::usual) report.detail = detail;
   for (const diagnosis what : found) {
     if (stage_of(what) == report.stage) report.find(what);
   }
@@ -88,6 +89,7 @@ void running_state::add(const error& why) {
   if (!found) return;
   lost_ = found;
   why_lost_ = cause_of(why);
+  lost_case_ = why.detail();
 }
 
 running_state::copy running_state::take_copy() const {
@@ -100,7 +102,9 @@ running_state::copy running_state::take_copy() const {
             scan_.seconds(),
             baud_,
             {},
-            name_};
+            name_,
+            is_device_,
+            lost_case_};
   if (lost_ && !found_.has(*lost_, detail::saturating_sub(now_ns_, window_ns_)))
     made.found.push_back(*lost_);
   if (!name_.empty()) made.port.add("address", name_);
@@ -113,6 +117,8 @@ std::vector<stage_report> running_state::stages(const point_filter& directions) 
   copy of = take_copy();
   const diagnostic_options none;
   stage_log log(none);
+  log.come_from(of.name);
+  if (!of.is_device) log.come_by(byte_path::file);
   const bool is_explained =
       std::ranges::any_of(of.found,
                           [](diagnosis what) {
@@ -122,14 +128,14 @@ std::vector<stage_report> running_state::stages(const point_filter& directions) 
                           }) ||
       of.measured.tally().arrivals.longest_host_pause_ns() >= arrival_statistics::stall_ns;
   if (is_explained) std::erase(of.found, diagnosis::stalls);
-  const auto add_found = [&] { add_those_of(log.stages().back(), of.found); };
+  const auto add_found = [&] { add_those_of(log.stages().back(), of.found, of.lost_case); };
   log.report(std::move(of.port));
   add_found();
   for (const auto where :
        {diagnostic_stage::permission, diagnostic_stage::holder, diagnostic_stage::baud_rate,
         diagnostic_stage::answers, diagnostic_stage::identity}) {
     stage_report report{.stage = where};
-    add_those_of(report, of.found);
+    add_those_of(report, of.found, of.lost_case);
     if (!report.diagnoses.empty()) log.report(std::move(report));
   }
   static_cast<void>(report_health(log, of.known.condition));
@@ -141,7 +147,7 @@ std::vector<stage_report> running_state::stages(const point_filter& directions) 
     judge_motor(motor, of.measured);
     log.report(std::move(motor));
     add_found();
-    add_those_of(stream, of.found);
+    add_those_of(stream, of.found, of.lost_case);
     judge_stream(stream, of.measured, of.seconds);
     log.report(std::move(stream));
     if (of.seconds < shortest_rate_s) {
@@ -149,7 +155,7 @@ std::vector<stage_report> running_state::stages(const point_filter& directions) 
     } else {
       report_rate(log, of.measured, of.known, *of.which);
     }
-    report_loss(log, of.measured, *of.which);
+    report_loss(log, of.measured, *of.which, nullptr, of.seconds);
     report_returns(log, of.measured, of.known, *of.which, directions);
     report_latency(log, of.measured, of.baud, of.name);
     return std::move(log.stages());

@@ -107,6 +107,8 @@ class running_state {
     std::uint32_t baud;
     stage_report port;
     std::string name;
+    bool is_device;
+    error_detail lost_case;
   };
   [[nodiscard]] copy take_copy() const;
 
@@ -114,6 +116,7 @@ class running_state {
   void back() {
     lost_.reset();
     why_lost_.clear();
+    lost_case_ = error_detail::usual;
   }
   void follow_scan() {
     if (scan_.take_reboot()) found_.add(diagnosis::reboots, now_ns_);
@@ -133,6 +136,7 @@ class running_state {
   found_diagnoses found_;
   std::optional<diagnosis> lost_{};  // why the lidar cannot be used now
   std::string why_lost_{};
+  error_detail lost_case_ = error_detail::usual;
   bool is_restarted_ = false;  // the driver has restarted it, and no packet has come yet
   std::uint64_t reconnects_ = 0;
   std::int64_t now_ns_ = 0;

@@ -83,17 +83,15 @@ void expect_contact(const examined& done, const stage_report& baud) {
   }
 }
 
-/// Which model it is, beside the size of its samples and its number.
+/// Which model it is, beside the size of its samples and its number. What is stated was measured.
 void expect_model(const examined& done, const stage_report& baud, const model& real) {
+  const auto size = static_cast<double>(sample_size(real.samples.layout));
+  for (const stage_report& each : done.stages)
+    EXPECT_EQ(number_in(each, "bytes_per_sample", size), size) << name_of(each.stage);
   const std::string word = word_in(baud, "model");
   if (word.empty()) return;
   const model* const row = model_named(word);
   ASSERT_NE(row, nullptr) << word;
-  const std::size_t size = sample_size(row->samples.layout);
-  EXPECT_EQ(number_in(baud, "bytes_per_sample"), static_cast<double>(size));
-  if (sum_of(done, "packets") > 0.0) {
-    EXPECT_EQ(size, sample_size(real.samples.layout));
-  }
   const stage_report* const identity = stage_of(done, diagnostic_stage::identity);
   if (identity == nullptr || identity->outcome != stage_verdict::ok) return;
   const auto number = static_cast<std::uint8_t>(number_in(*identity, "model"));
