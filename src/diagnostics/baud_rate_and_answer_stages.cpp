@@ -107,10 +107,14 @@ void live_run::add_failure(stage_report& report) {
 bool live_run::find_device() {
   stage_report baud{.stage = diagnostic_stage::baud_rate};
   const bool is_mute = log_.options().listen_only;
+  const std::uint32_t expected_baud = known_baud();
   const first_contact::state found = is_mute ? hear_device(baud) : contact_.make(baud);
   const bool goes_on = found == first_contact::state::made;
+  const bool is_wrong =
+      std::ranges::find(baud.diagnoses, diagnosis::wrong_baud_rate) != baud.diagnoses.end();
   if (known_baud() != 0) {
-    baud.measurements.insert(baud.measurements.begin(), make_evidence("baud", known_baud()));
+    baud.measurements.insert(baud.measurements.begin(),
+                             make_evidence("baud", is_wrong ? expected_baud : known_baud()));
   }
   if (goes_on) {
     contact_.report_scanning();
@@ -145,6 +149,7 @@ bool live_run::find_device() {
 first_contact::state live_run::hear_device(stage_report& baud) {
   const diagnostic_options& how = log_.options();
   log_.begin(diagnostic_activity::listening);
+  if (lidar_.is_driven_by_dtr()) static_cast<void>(link_.port().set_dtr(true));
   const std::uint32_t before = link_.port().baud();
   const auto found = link_.search({.model = how.model,
                                    .baud = how.baud,
@@ -155,6 +160,7 @@ first_contact::state live_run::hear_device(stage_report& baud) {
     lidar_.which = found->model;
     lidar_.candidates = found->candidates;
     link_.read_as(*lidar_.which);
+    if (lidar_.is_driven_by_dtr()) static_cast<void>(link_.port().set_dtr(true));
     return first_contact::state::made;
   }
   if (link_.port().baud() != before) static_cast<void>(link_.set_baud(before));
@@ -193,6 +199,11 @@ bool live_run::interview() {
       if (contact_.make_quiet()) ask_all(link_, replies_, *lidar_.which, 0);
       contact_.report_scanning();
     }
+    if (replies_.has_mute_question(*lidar_.which) && talks() && !lidar_.is_deaf) {
+      see_samples();
+      link_.stop();
+      if (is_of_other_size()) replies_.may_know_less();
+    }
     if (!replies_.exchanges().empty()) {
       replies_.judge(answer_, link_.host_pauses() > 0, *lidar_.which);
     }
@@ -218,13 +229,15 @@ bool live_run::interview() {
          report_health(log_, device_.condition);
 }
 
-// It is refused for its number: its packets show whether it could be read as the named model.
+// Its packets show whether it is the model as which it was asked, or could be read as the named one.
 void live_run::see_samples() {
   start_scan();
   const std::int64_t until_ns = link_.now_ns() + samples_ns;
-  while (!link_.is_over() && link_.now_ns() < until_ns && link_.layout().sample_bytes() == 0) {
-    link_.listen_for(50 * ms);
-  }
+  const auto is_certain = [this] {
+    const std::size_t size = link_.layout().sample_bytes();
+    return size != 0 && link_.layout().votes(size) >= certain_packets;
+  };
+  while (!link_.is_over() && link_.now_ns() < until_ns && !is_certain()) link_.listen_for(50 * ms);
 }
 
 void live_run::read_information() {

@@ -107,8 +107,7 @@ bool live_run::is_of_other_size() const {
   const layout_recogniser& seen = link_.layout();
   const std::size_t size = seen.sample_bytes();
   const std::size_t own = sample_size(lidar_.which->samples.layout);
-  constexpr std::uint32_t in_a_row = 5;
-  return size != 0 && size != own && seen.votes(own) == 0 && seen.votes(size) >= in_a_row;
+  return size != 0 && size != own && seen.votes(own) == 0 && seen.votes(size) >= certain_packets;
 }
 
 /// The number may be that of another model: its packets decide. Whether they are read in another way from here on.
