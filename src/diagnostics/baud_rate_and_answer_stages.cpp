@@ -151,11 +151,9 @@ first_contact::state live_run::hear_device(stage_report& baud) {
   log_.begin(diagnostic_activity::listening);
   if (lidar_.is_driven_by_dtr()) static_cast<void>(link_.port().set_dtr(true));
   const std::uint32_t before = link_.port().baud();
-  const auto found = link_.search({.model = how.model,
-                                   .baud = how.baud,
-                                   .listen_only = true,
-                                   .is_cancelled = how.is_cancelled},
-                                  listening_ns);
+  const auto found = link_.search(
+      {.model = how.model, .baud = how.baud, .listen_only = true, .is_cancelled = how.is_cancelled},
+      listening_ns);
   if (found) {
     lidar_.which = found->model;
     lidar_.candidates = found->candidates;
@@ -207,8 +205,8 @@ bool live_run::interview() {
     if (!replies_.exchanges().empty()) {
       replies_.judge(answer_, link_.host_pauses() > 0, *lidar_.which);
     }
-    const bool is_silent = std::ranges::find(answer_.diagnoses, diagnosis::stalls) !=
-                           answer_.diagnoses.end();
+    const bool is_silent =
+        std::ranges::find(answer_.diagnoses, diagnosis::stalls) != answer_.diagnoses.end();
     if (is_silent) answer_.add("silence_ms", (link_.now_ns() - link_.heard_ns()) / ms);
     if (link_.boots() > 0) answer_.add("boots", link_.boots());
     if (link_.boots() > 1) answer_.find(diagnosis::reboots);

@@ -31,43 +31,40 @@ constexpr std::string_view remote_answer_advice =
 
 // No cable, no ground, no reflection, no USB bridge: nobody here can know what is behind the network.
 constexpr std::array of_network{
-    other_words{unknown_bytes,
-                "",
-                "Set the bridge to the baud rate of the lidar. If a model or a baud rate was named, "
-                "check it, or omit it. Check that a lidar is attached to the bridge."},
+    other_words{
+        unknown_bytes, "",
+        "Set the bridge to the baud rate of the lidar. If a model or a baud rate was named, "
+        "check it, or omit it. Check that a lidar is attached to the bridge."},
     other_words{silent,
                 "Nothing arrives. Most likely the lidar has no power, or is not "
                 "attached to this bridge, or the bridge has another baud rate.",
                 "Check that the lidar has power and is attached to the bridge, that the bridge has "
                 "the baud rate of the lidar, and that no other program is connected to it. If a "
                 "model was named, check it, or omit it."},
-    other_words{deaf,
-                "",
-                "Check that the bridge passes on what it receives: it must write to the lidar, too. "
-                "A one-way lidar takes no commands: name its model."},
-    other_words{one_way_lidar,
-                "",
+    other_words{
+        deaf, "",
+        "Check that the bridge passes on what it receives: it must write to the lidar, too. "
+        "A one-way lidar takes no commands: name its model."},
+    other_words{one_way_lidar, "",
                 "Name the model that is attached: its word is in the remark. If it really is the "
                 "one that was named, commands do not reach it: the bridge must write to the lidar, "
                 "too."},
-    other_words{answers_late,
-                "",
+    other_words{answers_late, "",
                 "Use a faster network, or give lidar_options::answer_time a larger value."},
     other_words{answers_wrong, "", remote_answer_advice},
     other_words{answers_twice, "", remote_answer_advice},
     other_words{answers_missing, "", remote_answer_advice},
-    other_words{no_zero_angle,
-                "",
-                "Query it again. Or give it with --zero-angle (lidar_options::zero_angle): 0 if the "
-                "angles are right without it."},
-    other_words{health_error,
-                "",
-                "Switch the lidar off and on again. If it reports the error again, have it repaired; "
-                "the manufacturer knows the error code."},
+    other_words{
+        no_zero_angle, "",
+        "Query it again. Or give it with --zero-angle (lidar_options::zero_angle): 0 if the "
+        "angles are right without it."},
+    other_words{
+        health_error, "",
+        "Switch the lidar off and on again. If it reports the error again, have it repaired; "
+        "the manufacturer knows the error code."},
     other_words{brown_out, "", power_advice},
     other_words{reboots, "", power_advice},
-    other_words{does_not_start,
-                "",
+    other_words{does_not_start, "",
                 "Query its health; switch it off and on again. If this remains, it needs repair."},
     other_words{no_motor_power,
                 "The lidar answers and accepts the start, but its motor does not turn: most likely "
@@ -77,8 +74,7 @@ constexpr std::array of_network{
     other_words{unplugged, "The other side has closed the connection.",
                 "Check that the bridge is running, that the network works, and that the lidar is "
                 "attached to the bridge; then connect again."},
-    other_words{stalls,
-                "Nothing arrived for a while, although the connection exists.",
+    other_words{stalls, "Nothing arrived for a while, although the connection exists.",
                 "Check whether the head turns: if not, check the power supply and the motor; if it "
                 "does, the network and the bridge."},
     other_words{interference,
@@ -109,21 +105,23 @@ constexpr std::string_view examine_advice =
 
 // Nothing that can be tried at this computer changes a file.
 constexpr std::array of_file{
-    other_words{unknown_bytes,
-                "The file contains bytes of no known kind: of another device, at a wrong baud rate, "
-                "or damaged.",
-                "Record the lidar again at its baud rate: g4-dump doctor finds that at the port."},
+    other_words{
+        unknown_bytes,
+        "The file contains bytes of no known kind: of another device, at a wrong baud rate, "
+        "or damaged.",
+        "Record the lidar again at its baud rate: g4-dump doctor finds that at the port."},
     other_words{wrong_baud_rate,
                 "From here on the bytes make no sense: they were received at another baud rate.",
                 "Record the lidar again at its baud rate: g4-dump doctor finds that at the port."},
-    other_words{no_zero_angle,
-                "",
+    other_words{no_zero_angle, "",
                 "Give it with --zero-angle (lidar_options::zero_angle): 0 if the angles are right "
                 "without it. Or record the lidar again from its start on."},
-    other_words{stalls, "The bytes have a gap: the lidar sent nothing for a while, or what it sent "
-                        "was not recorded.",
-                "Examine the lidar itself with g4-dump doctor: it shows whether this still happens, "
-                "and what to try."},
+    other_words{
+        stalls,
+        "The bytes have a gap: the lidar sent nothing for a while, or what it sent "
+        "was not recorded.",
+        "Examine the lidar itself with g4-dump doctor: it shows whether this still happens, "
+        "and what to try."},
     other_words{bits_flipped, "Packets of the right length contain single wrong bits.",
                 examine_advice},
     other_words{bytes_dropped, "Single bytes are missing inside packets.", examine_advice},
@@ -154,8 +152,9 @@ constexpr std::array known_cases{
                "port."},
     known_case{error_detail::other_samples, other_device,
                "The packets of the lidar cannot be read as those of the model that was named."},
-    known_case{error_detail::other_maker, other_device,
-               "The bytes are those of a device of another kind, which this library does not read."},
+    known_case{
+        error_detail::other_maker, other_device,
+        "The bytes are those of a device of another kind, which this library does not read."},
     known_case{error_detail::unsupported_product, other_device,
                "The lidar is a product with another protocol, which this library does not read."},
     known_case{error_detail::missing_port, no_port, "There is no such port."},

@@ -152,7 +152,6 @@ result<void> link_monitor::write(bytes data) {
 }
 
 bool link_monitor::stop() {
-  if (is_mute_) return false;
   session& talk = link_.talk();
   talk.reset();
   static_cast<void>(talk.begin(requests::stop(), now_ns()));

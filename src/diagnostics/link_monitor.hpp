@@ -82,8 +82,8 @@ class event_splitter {
   /// Characters in a row.
   struct text_run {
     std::size_t size = 0;
-    std::size_t words = 0;  // those of words
-    bool has_end = false;   // of a line
+    std::size_t words = 0;    // those of words
+    bool has_end = false;     // of a line
     bool is_spoiled = false;  // it began in the middle of other bytes
     bool is_counted = false;
   } text_;

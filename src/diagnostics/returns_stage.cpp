@@ -54,7 +54,11 @@ void report_returns(stage_log& log, const stream_statistics& measured, const dev
     report.add("nothing_width_deg", arc.width_deg);
     places.append(places.empty() ? "" : "; in ").append(from).append(" to ").append(to);
     places.append(" degrees (").append(std::to_string(arc.width_deg)).append(" wide)");
-    options.append(options.empty() ? "" : " ").append("--ignore ").append(from).append(":").append(to);
+    options.append(options.empty() ? "" : " ")
+        .append("--ignore ")
+        .append(from)
+        .append(":")
+        .append(to);
   }
   if (!arcs.empty()) {
     report.remark.append("Nothing returned in ").append(places).append(", ");

@@ -142,8 +142,8 @@ class running_state {
   running_scan scan_;
   found_diagnoses found_;
   std::optional<diagnosis> lost_{};  // why the lidar cannot be used now
-  std::int64_t stall_ns_ = 0;  // the last one after which it was started again
-  std::int64_t heard_ns_ = 0;  // when the last bytes came
+  std::int64_t stall_ns_ = 0;        // the last one after which it was started again
+  std::int64_t heard_ns_ = 0;        // when the last bytes came
   std::string why_lost_{};
   error_detail lost_case_ = error_detail::usual;
   bool is_restarted_ = false;  // the driver has restarted it, and no packet has come yet

@@ -255,7 +255,7 @@ bool live_run::revive(std::int64_t& until_ns) {
       return false;
     case fate::dead:
       stream_.find(lasted_ns < of_the_start_ns && talks() ? diagnosis::brown_out
-                                                                       : diagnosis::stalls);
+                                                          : diagnosis::stalls);
       longest_gap_ns_ = std::max(longest_gap_ns_, link_.now_ns() - link_.heard_ns());
       return false;
     case fate::over:

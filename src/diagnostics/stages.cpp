@@ -43,8 +43,7 @@ std::string other_number(std::uint8_t id, const model& wanted, bool is_stated) {
   } else {
     text += one_of(*having.front());
   }
-  if (is_stated)
-    text += "; that of " + one_of(wanted) + " is " + std::to_string(wanted.ids[0]);
+  if (is_stated) text += "; that of " + one_of(wanted) + " is " + std::to_string(wanted.ids[0]);
   if (is_stated && wanted.ids[1] != 0) text += " or " + std::to_string(wanted.ids[1]);
   text += ".";
   if (product.empty() && having.empty())
@@ -73,7 +72,8 @@ constexpr std::array<std::pair<diagnosis, diagnostic_stage>, 14> last_of_stages{
 bool may_measure_in(const model& which, double samples, double seconds) noexcept {
   constexpr double far = 2.0;  // beyond the highest rate of the model
   double most_hz = std::max(which.rates.nominal_hz, which.rates.most_seen_hz);
-  for (const sample_rate_entry& each : which.rates.entries) most_hz = std::max<double>(most_hz, each.hz);
+  for (const sample_rate_entry& each : which.rates.entries)
+    most_hz = std::max<double>(most_hz, each.hz);
   return seconds <= 0.0 || most_hz <= 0.0 || samples <= far * most_hz * seconds;
 }
 
@@ -263,7 +263,10 @@ bool find_other_layout(stage_report& report, const layout_recogniser& seen, cons
 
 void report_latency(stage_log& log, const stream_statistics& measured, std::uint32_t baud,
                     std::string_view name) {
-  if (name.starts_with("tcp:") || is_pty(std::string(name))) {
+  if (log.by() == byte_path::network) {
+    return log.skip(diagnostic_stage::usb_latency, "It does not apply to a network bridge.");
+  }
+  if (is_pty(std::string(name))) {
     return log.skip(diagnostic_stage::usb_latency, "There is no USB bridge in this connection.");
   }
   if (baud == 0 || !measured.tally().arrivals.has_delays()) {

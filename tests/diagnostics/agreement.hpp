@@ -194,8 +194,7 @@ inline void expect_number(const examined& done) {
   for (const stage_report& each : done.stages) {
     said += static_cast<int>(std::ranges::count(each.diagnoses, diagnosis::other_number));
     for (const diagnosis what : each.diagnoses) {
-      const bool is_insisting =
-          each.explain(what).advice.find("insist") != std::string_view::npos;
+      const bool is_insisting = each.explain(what).advice.find("insist") != std::string_view::npos;
       EXPECT_TRUE(!is_insisting || each.stage == diagnostic_stage::identity) << name_of(each.stage);
       if (is_insisting) {
         EXPECT_EQ(number_in(each, "bytes_per_sample"), 0.0);

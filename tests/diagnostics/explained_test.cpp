@@ -41,9 +41,8 @@ template <class Look>
 void each_explained(byte_path by, error_detail detail, Look look) {
   for (std::size_t stage = 0; stage < diagnostic_stage_count; ++stage) {
     for (std::size_t what = 0; what < diagnosis_count; ++what) {
-      const stage_report report{.stage = static_cast<diagnostic_stage>(stage),
-                                .by = by,
-                                .detail = detail};
+      const stage_report report{
+          .stage = static_cast<diagnostic_stage>(stage), .by = by, .detail = detail};
       look(report, static_cast<diagnosis>(what));
     }
   }
@@ -101,25 +100,25 @@ TEST(Explained, OfAFile_AdvisesNothingAtAPort) {
 TEST(Explained, HasNameAndSeverityOfTheDiagnosis) {
   for (const byte_path by : {byte_path::line, byte_path::network, byte_path::file}) {
     for (int i = 0; i <= static_cast<int>(error_detail::other_bridges); ++i) {
-      each_explained(by, static_cast<error_detail>(i), [](const stage_report& report, diagnosis what) {
-        const diagnosis_info info = report.explain(what);
-        EXPECT_EQ(info.name, describe(what).name);
-        EXPECT_EQ(info.severity, describe(what).severity);
-        EXPECT_TRUE(info.cause.ends_with('.')) << info.cause;
-        EXPECT_TRUE(info.advice.ends_with('.')) << info.advice;
-      });
+      each_explained(by, static_cast<error_detail>(i),
+                     [](const stage_report& report, diagnosis what) {
+                       const diagnosis_info info = report.explain(what);
+                       EXPECT_EQ(info.name, describe(what).name);
+                       EXPECT_EQ(info.severity, describe(what).severity);
+                       EXPECT_TRUE(info.cause.ends_with('.')) << info.cause;
+                       EXPECT_TRUE(info.advice.ends_with('.')) << info.advice;
+                     });
     }
   }
 }
 
 // Each error of the library has its own advice in the doctor, too.
 TEST(Explained, OfAnErrorWithACase_HasItsAdvice) {
-  for (const auto& [what, detail] :
-       {std::pair(problem::permission, error_detail::not_passed),
-        std::pair(problem::no_port, error_detail::other_bridges),
-        std::pair(problem::no_port, error_detail::missing_port),
-        std::pair(problem::no_port, error_detail::not_attached),
-        std::pair(problem::bad_option, error_detail::bad_name)}) {
+  for (const auto& [what, detail] : {std::pair(problem::permission, error_detail::not_passed),
+                                     std::pair(problem::no_port, error_detail::other_bridges),
+                                     std::pair(problem::no_port, error_detail::missing_port),
+                                     std::pair(problem::no_port, error_detail::not_attached),
+                                     std::pair(problem::bad_option, error_detail::bad_name)}) {
     failing_connector from(what, detail);
     examined done;
     done.stages = diagnose(from);
@@ -150,13 +149,12 @@ TEST(Explained, DeviceThatTheContainerMayNotUse) {
 
 // Where packets cannot be read as the named model, to insist does not help.
 TEST(Explained, OfAnotherDevice_AdvisesToInsistOnANumberOnly) {
-  each_explained(byte_path::line, error_detail::usual,
-                 [](const stage_report& report, diagnosis what) {
-                   if (what != diagnosis::other_device) return;
-                   const bool insists =
-                       report.explain(what).advice.find("insist") != std::string_view::npos;
-                   EXPECT_EQ(insists, report.stage == diagnostic_stage::identity);
-                 });
+  each_explained(
+      byte_path::line, error_detail::usual, [](const stage_report& report, diagnosis what) {
+        if (what != diagnosis::other_device) return;
+        const bool insists = report.explain(what).advice.find("insist") != std::string_view::npos;
+        EXPECT_EQ(insists, report.stage == diagnostic_stage::identity);
+      });
   for (const error_detail detail : {error_detail::other_samples, error_detail::other_maker,
                                     error_detail::unsupported_product}) {
     const stage_report report{.stage = diagnostic_stage::identity, .detail = detail};

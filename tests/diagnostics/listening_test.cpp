@@ -49,7 +49,8 @@ TEST(DoctorListens, WritesNotAByte_WhateverHappens) {
       const auto kind = static_cast<sim::fault_kind>(i);
       for (const bool is_named : {false, true}) {
         const heard all = listen_to(
-            word, {sim::make_fault(sim::fault_kind::scanning), sim::make_fault(kind, 3'000'000'000)},
+            word,
+            {sim::make_fault(sim::fault_kind::scanning), sim::make_fault(kind, 3'000'000'000)},
             is_named);
         SCOPED_TRACE(std::string(word) + ", " + std::string(sim::name_of(kind)) +
                      (is_named ? ", named" : ""));

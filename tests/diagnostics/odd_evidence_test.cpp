@@ -61,15 +61,14 @@ TEST_P(OddEvidence, AgreesWithTheVerdict) {
   const odd_device& one = GetParam();
   const model& real = *model_named(one.real);
   using enum sim::fault_kind;
-  const std::vector<std::vector<sim::fault>> all{
-      {},
-      {sim::make_fault(scanning)},
-      {sim::make_fault(scanning), sim::make_fault(deaf)},
-      {sim::make_fault(stall, 5'000'000'000)},
-      {sim::make_fault(flip)},
-      {sim::make_fault(drop)},
-      {sim::make_fault(insert)},
-      {sim::make_fault(truncate)}};
+  const std::vector<std::vector<sim::fault>> all{{},
+                                                 {sim::make_fault(scanning)},
+                                                 {sim::make_fault(scanning), sim::make_fault(deaf)},
+                                                 {sim::make_fault(stall, 5'000'000'000)},
+                                                 {sim::make_fault(flip)},
+                                                 {sim::make_fault(drop)},
+                                                 {sim::make_fault(insert)},
+                                                 {sim::make_fault(truncate)}};
   for (std::size_t i = 0; i < all.size(); ++i) {
     for (const bool is_network : {false, true}) {
       SCOPED_TRACE(std::to_string(i) + (is_network ? ", network" : ""));

@@ -15,10 +15,10 @@
 #include <vector>
 
 #include "diagnostics/doctor_bench.hpp"
+#include "g4lidar/core/model.hpp"
 #include "g4lidar/diagnostics/diagnostic_message.hpp"
 #include "g4lidar/diagnostics/running_diagnosis.hpp"
 #include "g4lidar/lidar.hpp"
-#include "g4lidar/core/model.hpp"
 #include "g4lidar/sim/device_options.hpp"
 #include "g4lidar/sim/ray_caster.hpp"
 #include "g4lidar/sim/setup.hpp"
@@ -119,11 +119,11 @@ struct blind_place {
 // What is to be copied is the option of the same frame: with it nothing is said any more. Of sectors in each direction, that
 // cross 0, and of all but a narrow one.
 TEST(Returns, TheLineToCopy_LeavesTheSectorOut) {
-  for (const blind_place& place : {blind_place{"wall 2 -20 2 20", 1}, blind_place{"wall -2 -20 -2 20", 1},
-                                   blind_place{"wall -20 2 20 2", 1}, blind_place{"wall -20 -2 20 -2", 1},
-                                   blind_place{"wall 2 -0.2 2 0.2", 1},
-                                   blind_place{"wall -2 -0.2 -2 0.2", 1},
-                                   blind_place{"wall 2 -2 2 2\nwall -2 -2 -2 2", 2}}) {
+  for (const blind_place& place :
+       {blind_place{"wall 2 -20 2 20", 1}, blind_place{"wall -2 -20 -2 20", 1},
+        blind_place{"wall -20 2 20 2", 1}, blind_place{"wall -20 -2 20 -2", 1},
+        blind_place{"wall 2 -0.2 2 0.2", 1}, blind_place{"wall -2 -0.2 -2 0.2", 1},
+        blind_place{"wall 2 -2 2 2\nwall -2 -2 -2 2", 2}}) {
     const sim::world scene = world_of(std::string(place.walls) + "\nlidar 0 0 0\n");
     for (const char* const word : {"g4", "x4", "tg15"}) {
       for (const frame in : {frame::vendor, frame::robot}) {
@@ -153,7 +153,8 @@ TEST(Returns, TheLineToCopy_LeavesTheSectorOut) {
         if (width > 300) continue;
         const std::array<sector, 1> half{sector(found[0].first, found[0].first + width / 2)};
         how.directions.ignored_sectors = half;
-        const auto rest = options_in(examine_in(scene, options, how).at(diagnostic_stage::returns).remark);
+        const auto rest =
+            options_in(examine_in(scene, options, how).at(diagnostic_stage::returns).remark);
         ASSERT_EQ(rest.size(), 1U);
         EXPECT_NEAR((rest[0].first - found[0].first + 360) % 360, width / 2 + 1, 2);
         EXPECT_NEAR((rest[0].second - found[0].second + 540) % 360, 180, 3);
@@ -171,7 +172,8 @@ TEST(Returns, DegreesAreThoseOfTheFrame) {
   std::array<std::pair<int, int>, 2> seen{};
   for (const frame in : {frame::vendor, frame::robot}) {
     how.directions.in = in;
-    const auto found = options_in(examine_in(scene, options, how).at(diagnostic_stage::returns).remark);
+    const auto found =
+        options_in(examine_in(scene, options, how).at(diagnostic_stage::returns).remark);
     ASSERT_EQ(found.size(), 1U);
     seen.at(in == frame::robot ? 1 : 0) = found[0];
   }
@@ -186,7 +188,8 @@ TEST(Returns, RunningDiagnosis_HasTheSameText) {
   sim::device simulated(scene, {});
   sim::virtual_clock clock;
   running_diagnosis judge;
-  auto lidar = lidar::open(judge.observe(std::make_unique<sim::virtual_connector>(simulated, clock)));
+  auto lidar =
+      lidar::open(judge.observe(std::make_unique<sim::virtual_connector>(simulated, clock)));
   ASSERT_TRUE(lidar && lidar->start());
   while (clock.now_ns() < 30'000'000'000)
     static_cast<void>(lidar->next_scan(std::chrono::milliseconds(200)));

@@ -48,8 +48,8 @@ TEST(RunningWords, AGap_HasItsLength) {
       for (const stage_report& each : stages) {
         if (!has(each, diagnosis::stalls)) continue;
         ++looks;
-        longest_ms = std::max({longest_ms, number_in(each, "longest_silence_ms"),
-                               number_in(each, "silence_ms")});
+        longest_ms = std::max(
+            {longest_ms, number_in(each, "longest_silence_ms"), number_in(each, "silence_ms")});
         EXPECT_GT(longest_ms, 149.0) << found;
       }
     }

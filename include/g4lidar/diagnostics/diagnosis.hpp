@@ -159,8 +159,8 @@ struct stage_report {
   stage_verdict outcome = stage_verdict::ok;
   std::vector<diagnosis> diagnoses{};  ///< The most likely first.
   std::vector<evidence> measurements{};
-  std::string remark{};  ///< One more sentence; empty: none.
-  byte_path by = byte_path::line;                    ///< On what way the bytes came.
+  std::string remark{};                       ///< One more sentence; empty: none.
+  byte_path by = byte_path::line;             ///< On what way the bytes came.
   error_detail detail = error_detail::usual;  ///< Which case of its diagnosis it is.
 
   /// describe() for one of its diagnoses, with the cause and the advice for this way of the bytes and for this case: of

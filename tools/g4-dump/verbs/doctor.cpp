@@ -221,7 +221,8 @@ verb make_doctor_verb() {
       .arguments = {source_argument(*options)},
       .options = joined(
           output_rows(*options), json, time, baud_row(*options), model_row(*options),
-          in_group("Device", {listen_row(*options)}), all_ports_row(*options), direction_rows(*options),
+          in_group("Device", {listen_row(*options)}), all_ports_row(*options),
+          direction_rows(*options),
           in_group("Filters",
                    {frame_row("--frame",
                               "Of --fov and --ignore; vendor: clockwise from the cable (vendor)",
