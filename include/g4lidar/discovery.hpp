@@ -105,6 +105,7 @@ struct recognised_lidar {
   known_by by = known_by::nothing;  ///< From what `model` is known.
   /// Its packets are those of a two-way lidar, and it does not answer: it can be read only.
   bool is_silent = false;
+  bool speaks_telnet = false;  ///< As recognition::speaks_telnet.
 };
 
 /// What is known before a search.

@@ -37,13 +37,15 @@ struct explained {
 
 std::vector<stage_report> examine(const std::variant<path_text, simulator*>& device,
                                   double measuring_time, std::uint32_t baud,
-                                  const std::optional<std::string>& model,
+                                  const std::optional<std::string>& model, bool listen_only,
                                   const std::optional<report_function>& on_stage) {
   if (!(measuring_time >= 0.0 && measuring_time <= 3600.0))
     raise_impossible("measuring_time: 0 to 3600 s", measuring_time);
   diagnostic_options how;
   how.baud = baud;
   how.model = model_of(model);
+  how.listen_only = listen_only;
+  how.directions.in = frame::robot;  // as in filters
   how.measuring_time = std::chrono::nanoseconds(static_cast<std::int64_t>(measuring_time * 1e9));
   // An exception of a signal handler or of on_stage ends the run.
   std::optional<nb::python_error> raised;
@@ -142,7 +144,7 @@ void bind_doctor(nb::module_& module) {
           "diagnoses",
           [](const stage_report& r) {
             std::vector<explained> all;
-            for (const diagnosis each : r.diagnoses) all.push_back({describe(each)});
+            for (const diagnosis each : r.diagnoses) all.push_back({r.explain(each)});
             return all;
           },
           "What may be wrong, the most likely first.")
@@ -156,13 +158,15 @@ void bind_doctor(nb::module_& module) {
       });
   module.def(
       "doctor", &examine, "device"_a = path_text{}, nb::kw_only(), "measuring_time"_a = 5.0,
-      "baud"_a = 0, "model"_a = nb::none(), "on_stage"_a = nb::none(),
+      "baud"_a = 0, "model"_a = nb::none(), "listen_only"_a = false, "on_stage"_a = nb::none(),
       "Examines a lidar, its connection and its port; or a file. `device` as in open(). "
       "Measures the running scan for "
       "`measuring_time` seconds; takes about 3 s more with a healthy lidar, 8 s if it has to be "
       "searched. Sends queries, one start, and stops; changes no setting. `baud`: bits per "
       "second (0: as found). `model`: the one that is expected, 'x4'; None: the one that the "
-      "device or the file shows. `on_stage` is called with each stage when it ends.");
+      "device or the file shows. `listen_only`: not a byte is sent; what needs answers is skipped. "
+      "Sectors without a return are given in the frame 'robot'. `on_stage` is called with each "
+      "stage when it ends.");
 }
 
 }  // namespace g4lidar::python

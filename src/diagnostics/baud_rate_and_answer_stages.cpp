@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "driver/identity_reader.hpp"
+#include "g4lidar/recognition.hpp"
 #include "live_run.hpp"
 #include "transport/custom_baud.hpp"
 
@@ -15,6 +16,10 @@ namespace {
 
 /// Two revolutions at the lowest frequency of lidars that answer nothing.
 constexpr std::int64_t information_ns = 700 * ms;
+/// For the first packet, at all rates, if nothing is sent.
+constexpr std::int64_t listening_ns = 4'000 * ms;
+/// For the first packets of a lidar that was started to see its samples.
+constexpr std::int64_t samples_ns = 3'000 * ms;
 
 /// A remark if the bridge cannot make the wanted rate, or if the lidar has not that of its model.
 void add_rate_difference(stage_report& report, std::uint32_t real, std::uint32_t given,
@@ -34,10 +39,10 @@ void add_rate_difference(stage_report& report, std::uint32_t real, std::uint32_t
                   std::to_string(wanted) + ".";
 }
 
-/// The model, and the others that send the same bytes.
-void add_model(stage_report& report, const examined_lidar& lidar) {
+/// The model, the size of its samples as far as packets have shown it (0: not), and the others that send the same bytes.
+void add_model(stage_report& report, const examined_lidar& lidar, std::size_t sample_bytes) {
   report.add("model", std::string(lidar.which->word));
-  report.add("bytes_per_sample", sample_size(lidar.which->samples.layout));
+  if (sample_bytes != 0) report.add("bytes_per_sample", sample_bytes);
   if (lidar.candidates.size() > 1) {
     report.add("same_bytes", words_of(std::span(lidar.candidates).subspan(1)));
   }
@@ -51,6 +56,8 @@ live_run::live_run(std::unique_ptr<transport> opened, stage_log& log, bool may_p
              .is_named = log.options().model != nullptr},
       link_(std::move(opened), log.options().is_cancelled, *lidar_.which),
       contact_({log_, link_, replies_, lidar_, answer_}, may_pulse_dtr) {
+  log.come_from(link_.port().name());
+  if (log.options().listen_only) link_.be_mute();
   const std::uint32_t baud = first_baud(log.options(), link_.port().baud());
   lidar_.has_baud = baud != 0 && link_.set_baud(baud);
 }
@@ -71,16 +78,20 @@ void live_run::run() {
     stream_.find(diagnosis::deaf);
   }
   report_stream();
+  const double seconds = static_cast<double>(measured_ns_) / 1e9;
   report_rate(log_, measured_, device_, *lidar_.which);
-  report_loss(log_, measured_, *lidar_.which, &link_.survey(),
-              link_.port().name().starts_with("tcp:"));
+  report_loss(log_, measured_, *lidar_.which, &link_.survey(), seconds);
   report_returns(log_, measured_, device_, *lidar_.which, log_.options().directions);
   report_latency(log_, measured_, baud, link_.port().name());
 }
 
+std::uint32_t live_run::known_baud() const noexcept {
+  return lidar_.has_baud || log_.options().baud != 0 ? link_.port().baud() : 0;
+}
+
 bool live_run::end() {
   link_.ignore_cancel();
-  const bool is_stopped = lidar_.is_one_way() || !lidar_.takes_commands() || link_.stop();
+  const bool is_stopped = !talks() || !lidar_.takes_commands() || link_.stop();
   if (lidar_.is_driven_by_dtr()) static_cast<void>(link_.port().set_dtr(false));
   return is_stopped;
 }
@@ -89,23 +100,31 @@ void live_run::add_failure(stage_report& report) {
   const std::optional<error>& why = link_.failure();
   if (!why) return;
   report.find(diagnosis_of(why->code()));
-  report.remark = why->message();
+  report.detail = why->detail();
+  report.remark = cause_of(*why);
 }
 
 bool live_run::find_device() {
   stage_report baud{.stage = diagnostic_stage::baud_rate};
+  const bool is_mute = log_.options().listen_only;
+  const std::uint32_t expected_baud = known_baud();
   const first_contact::state found = contact_.make(baud);
   const bool goes_on = found == first_contact::state::made;
   // Without a packet or an answer at this rate it is only what the port was set to.
   const bool is_rate =
       goes_on || (found == first_contact::state::refused && !baud.measurements.empty());
-  if (is_rate && link_.port().baud() != 0) {
-    baud.measurements.insert(baud.measurements.begin(), make_evidence("baud", link_.port().baud()));
+  const bool is_wrong =
+      std::ranges::find(baud.diagnoses, diagnosis::wrong_baud_rate) != baud.diagnoses.end();
+  if (is_rate && known_baud() != 0) {
+    baud.measurements.insert(baud.measurements.begin(),
+                             make_evidence("baud", is_wrong ? expected_baud : known_baud()));
   }
   if (goes_on) {
     contact_.report_scanning();
     const bool has_number = replies_.snapshot(*lidar_.which).information.has_value();
-    if (has_number || lidar_.is_named || !lidar_.candidates.empty()) add_model(baud, lidar_);
+    if (has_number || lidar_.is_named || !lidar_.candidates.empty()) {
+      add_model(baud, lidar_, link_.sample_bytes());
+    }
     if (lidar_.has_baud) {
       add_rate_difference(baud, link_.port().baud(), log_.options().baud, *lidar_.which);
     }
@@ -117,7 +136,9 @@ bool live_run::find_device() {
     baud.outcome = stage_verdict::skipped;
     baud.remark = "Nothing arrived to judge it by.";
     answer_.find(diagnosis::silent);
-    if (!lidar_.is_named) {
+    if (is_mute) {
+      answer_.remark = "Nothing was sent: a lidar that waits for a command is silent.";
+    } else if (!lidar_.is_named) {
       answer_.remark =
           "No model was named: only the question for the device information was sent. If the model "
           "is named, a start is tried, too.";
@@ -129,10 +150,11 @@ bool live_run::find_device() {
 }
 
 bool live_run::interview() {
-  if (lidar_.is_one_way()) {
+  if (!talks()) {
     const std::string name(lidar_.which->name);
     log_.skip(diagnostic_stage::answers,
-              "It does not apply: a model like " + name + " answers nothing.");
+              lidar_.is_one_way() ? "It does not apply: a model like " + name + " answers nothing."
+                                  : "Nothing was sent: the lidar was only listened to.");
     read_information();
     if (link_.failure()) {
       stage_report identity{.stage = diagnostic_stage::identity};
@@ -148,18 +170,45 @@ bool live_run::interview() {
       if (contact_.make_quiet()) ask_all(link_, replies_, *lidar_.which, 0);
       contact_.report_scanning();
     }
+    if (replies_.has_mute_question(*lidar_.which) && talks() && !lidar_.is_deaf) {
+      see_samples();
+      link_.stop();
+      if (is_of_other_size()) replies_.may_know_less();
+    }
     if (!replies_.exchanges().empty()) {
       replies_.judge(answer_, link_.host_pauses() > 0, *lidar_.which);
     }
+    const bool is_silent =
+        std::ranges::find(answer_.diagnoses, diagnosis::stalls) != answer_.diagnoses.end();
+    if (is_silent) answer_.add("silence_ms", (link_.now_ns() - link_.heard_ns()) / ms);
     if (link_.boots() > 0) answer_.add("boots", link_.boots());
     if (link_.boots() > 1) answer_.find(diagnosis::reboots);
+    if (lidar_.is_deaf && answer_.remark.empty()) {
+      answer_.remark = contradictions_of({.model = lidar_.which, .is_silent = true});
+    }
     add_failure(answer_);
     log_.report(std::move(answer_));
     device_ = replies_.snapshot(*lidar_.which);
   }
   if (link_.is_over()) return false;
-  return report_identity(log_, device_.information, *lidar_.which, link_.port().baud()) &&
+  if (device_.information && lidar_.is_named && link_.sample_bytes() == 0 && talks() &&
+      refuses_number(log_.options(), *lidar_.which, device_.information->model, known_baud())) {
+    see_samples();
+  }
+  return report_identity(log_, device_.information, *lidar_.which, known_baud(),
+                         link_.sample_bytes()) &&
          report_health(log_, device_.condition);
+}
+
+// Its packets show whether it is the model as which it was asked, or could be read as the named one.
+void live_run::see_samples() {
+  start_scan();
+  const std::int64_t until_ns = link_.now_ns() + samples_ns;
+  const auto is_certain = [this] {
+    const std::size_t size = link_.layout().sample_bytes();
+    return size != 0 && link_.layout().votes(size) >= certain_packets;
+  };
+  while (!link_.is_over() && link_.now_ns() < until_ns && !is_certain()) link_.listen_for(50 * ms);
 }
 
 void live_run::read_information() {

@@ -63,7 +63,7 @@ constexpr std::array rows{
         "Pass the bytes on as they are: set the bridge to raw TCP with the baud rate of the lidar "
         "and without flow control; transfer files as binary. Over a slow network bytes may be "
         "lost: use a better connection.",
-        {line_noise, bytes_dropped}),
+        {bytes_dropped, line_noise}),
     row("no_lidar", fail,
         "These are not the bytes of a lidar of this family: a device of another maker or kind has "
         "sent them, or nothing comes back but what was sent.",
@@ -79,8 +79,7 @@ constexpr std::array rows{
         "the rate of the lidar.",
         {other_device, interference, line_noise}),
     row("silent", fail,
-        "Nothing arrives, whatever is sent. Most likely the lidar has no power, or is not attached "
-        "to this port.",
+        "Nothing arrives. Most likely the lidar has no power, or is not attached to this port.",
         problem::silence, {deaf, wrong_baud_rate, stalls}),
     row("deaf", fail, "The lidar sends but does not react: commands do not reach it.",
         problem::does_not_stop),
@@ -93,8 +92,8 @@ constexpr std::array rows{
         {deaf, other_device}),
     row("was_scanning", warn,
         "The lidar was scanning before the run: a program was killed, or another one uses it.",
-        "Nothing, if a program has just been killed; the scan was stopped. If it happens again, "
-        "look for another program that uses the port.",
+        "Nothing, if a program has just been killed. If it happens again, look for another program "
+        "that uses the port.",
         {interference}),
     row("answers_late", fail,
         "Replies arrive so late that they could be taken for the replies to later commands.",
@@ -131,8 +130,7 @@ constexpr std::array rows{
         "Check that nothing blocks the head and that the motor has power."),
     row("no_motor_power", fail,
         "The lidar answers and accepts the start, but its motor does not turn: most likely its "
-        "second "
-        "USB plug, which gives power to the motor, is not connected.",
+        "second plug, which gives power to the motor, is not connected.",
         "Connect the second plug of the lidar, to a charger or a powered hub. If it is connected, "
         "use a "
         "connection that has the line DTR, which starts the motor; check that nothing blocks the "

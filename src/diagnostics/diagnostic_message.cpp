@@ -28,7 +28,7 @@ diagnostic_status status_of(const stage_report& stage, std::string_view hardware
                          .name = std::string(program_name).append(name_of(stage.stage)),
                          .hardware_id = std::string(hardware_id)};
   for (const diagnosis what : stage.diagnoses) {
-    const diagnosis_info info = describe(what);
+    const diagnosis_info info = stage.explain(what);
     if (!made.message.empty()) made.message.append(" ");
     made.message.append(info.cause).append(" ").append(info.advice);
     made.values.emplace_back("diagnosis", info.name);

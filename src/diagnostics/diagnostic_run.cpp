@@ -12,6 +12,7 @@
 #include <cerrno>
 #include <climits>
 #include <cstdlib>
+#include <functional>
 #include <span>
 #include <string>
 #include <utility>
@@ -23,6 +24,7 @@
 #include "live_run.hpp"
 #include "stages.hpp"
 #include "transport/port_holder.hpp"
+#include "transport/system_calls.hpp"
 
 namespace g4lidar {
 namespace {
@@ -47,9 +49,27 @@ void report_unopened(stage_log& log, stage_report current, const error& why) {
   const diagnosis what = diagnosis_of(why.code());
   while (current.stage < stage_of(what)) pass(log, current);
   current.find(what);
-  current.remark = why.detail() == error_detail::not_passed ? why.message() : cause_of(why);
+  current.detail = why.detail();
+  current.remark = cause_of(why);
   pass(log, current);
   log.skip_from(current.stage, "Not reached.");
+}
+
+/// As select_port(), which writes to ports to find a lidar by its number, or among several.
+result<port_info> select_silently(std::string_view source) {
+  if (source.starts_with("serial:")) {
+    return failure(task::finding, problem::bad_option,
+                   std::string(source) + ", which is a question, and nothing is to be sent");
+  }
+  if (!source.empty()) return select_port(source);
+  auto ports = list_ports();
+  if (!ports) return tl::unexpected(ports.error());
+  std::erase_if(*ports, std::not_fn(is_g4_bridge));
+  if (ports->empty()) return select_port(source);
+  if (ports->size() == 1) return ports->front();
+  std::string paths;
+  for (const port_info& each : *ports) paths.append(paths.empty() ? "" : ", ").append(each.path);
+  return failure(task::finding, problem::several_ports, paths);
 }
 
 /// Reports port, permission and holder, and opens the port. Returns null if that fails; then all
@@ -69,7 +89,9 @@ class port_stages {
   }
 
   std::unique_ptr<transport> open(const std::string& source) {
-    auto found = select_port(source, {.probe_all_ports = log_.options().probe_all_ports});
+    auto found = log_.options().listen_only
+                     ? select_silently(source)
+                     : select_port(source, {.probe_all_ports = log_.options().probe_all_ports});
     if (!found) return give_up(found.error());
     port_info port = std::move(*found);
     if (!look_at_port(port) || !look_at_permission(port.path)) return nullptr;
@@ -93,15 +115,18 @@ class port_stages {
     report_unopened(log_, report_, why);
     return nullptr;
   }
-  bool give_up(problem what, const std::string& path, int reason) {
-    return give_up(error(task::opening, what, path, reason)) != nullptr;
+  bool give_up(problem what, const std::string& path, int reason,
+               error_detail detail = error_detail::usual) {
+    return give_up(error(task::opening, what, path, reason, detail)) != nullptr;
   }
 
   bool look_at_port(port_info& port) {
     report_.add("path", port.path);
     const std::string real = real_path(port.path);
     if (real != port.path) report_.add("leads_to", real);
-    if (::access(port.path.c_str(), F_OK) != 0) return give_up(problem::no_port, port.path, ENOENT);
+    if (::access(port.path.c_str(), F_OK) != 0) {
+      return give_up(problem::no_port, port.path, ENOENT, error_detail::missing_port);
+    }
     struct stat status{};
     const bool is_known = ::stat(port.path.c_str(), &status) == 0;
     if (is_known && (!S_ISCHR(status.st_mode) || is_pty_master(status))) {
@@ -131,8 +156,9 @@ class port_stages {
       report_.add("group", its == nullptr ? std::to_string(status.st_gid) : its->gr_name);
       report_.add("mode", digits_of(static_cast<unsigned>(status.st_mode) & 07777U, 8, 4));
     }
-    if (::access(path.c_str(), R_OK | W_OK) != 0) return give_up(problem::permission, path, errno);
-    return true;
+    if (::access(path.c_str(), R_OK | W_OK) == 0) return true;
+    const int why = errno;
+    return give_up(problem::permission, path, why, permission_detail(why));
   }
 
   // A process has the other end of a pseudo-terminal open, and usually also this one.
@@ -188,9 +214,11 @@ std::vector<stage_report> diagnose(std::string_view source, const diagnostic_opt
     }
     case source_kind::recording:
     case source_kind::raw_bytes:
+      log.come_by(byte_path::file);
       examine_file(std::string(source), log);
       return std::move(log.stages());
   }
+  log.come_from(device);
   port_stages first(log);
   auto opened = device.starts_with("tcp:") ? first.connect(device) : first.open(device);
   if (!opened) return std::move(log.stages());

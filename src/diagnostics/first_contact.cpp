@@ -30,7 +30,8 @@ first_contact::state first_contact::make(stage_report& baud) {
   examined_lidar& lidar = of_.lidar;
   const state found = search(baud);
   if (found == state::refused || link.is_over() || lidar.is_deaf) return found;
-  if (lidar.is_one_way()) return found == state::none ? unknown(baud) : found;
+  const bool is_mute = lidar.is_one_way() || of_.log.options().listen_only;
+  if (is_mute) return found == state::none ? unknown(baud) : found;
   const stream_counts& heard = link.searched().counts;
   const bool is_lidar =
       lidar.takes_commands() || link.boots() > 0 || heard.responses + heard.packets > 0;
@@ -50,7 +51,8 @@ first_contact::state first_contact::unknown(stage_report& baud) {
   link_monitor& link = of_.link;
   if (garbage_ == 0 || link.is_over()) return state::none;
   baud.add("bytes_of_no_packet", garbage_);
-  if (!find_other_source(baud, link.survey()) &&
+  const std::optional<stream_survey>& other = link.searched().other;
+  if (!find_other_source(baud, other ? *other : link.survey()) &&
       !find_other_layout(baud, link.layout(), *of_.lidar.which)) {
     baud.find(diagnosis::unknown_bytes);
     if (!tried_.empty()) baud.remark = "No packet at any rate that was tried: " + tried_ + ".";
@@ -157,11 +159,19 @@ first_contact::state first_contact::search(stage_report& baud) {
   examined_lidar& lidar = of_.lidar;
   of_.log.begin(diagnostic_activity::searching);
   const std::uint32_t before = link.port().baud();
-  search_options how{.may_pulse_dtr = may_pulse_dtr_};
+  const diagnostic_options& wanted = of_.log.options();
+  search_options how{.baud = wanted.listen_only ? wanted.baud : 0,
+                     .listen_only = wanted.listen_only,
+                     .may_pulse_dtr = may_pulse_dtr_ && !wanted.listen_only,
+                     .is_cancelled = wanted.is_cancelled};
   if (lidar.is_named) how.model = lidar.which;
   auto found = link.search(how, search_ns);
   // Which listens alone.
-  if (!found && lidar.is_one_way() && !link.is_over()) found = link.search({}, search_ns);
+  if (!found && lidar.is_one_way() && !link.is_over()) {
+    how.model = nullptr;
+    how.may_pulse_dtr = false;
+    found = link.search(how, search_ns);
+  }
   if (!found) {
     if (link.port().baud() != before) static_cast<void>(link.set_baud(before));
     const error_detail why = found.error().detail();
@@ -172,7 +182,10 @@ first_contact::state first_contact::search(stage_report& baud) {
       if (found.error() == problem::garbage) tried_ = found.error().subject();
       return state::none;
     }
+    const std::optional<stream_survey>& other = link.searched().other;
+    if (other && find_other_source(baud, *other)) return state::refused;
     baud.find(diagnosis::other_device);
+    baud.detail = why;
     baud.remark = cause_of(found.error());
     return state::refused;
   }
@@ -197,7 +210,7 @@ first_contact::state first_contact::search(stage_report& baud) {
   wait_for_late_answers();
   lidar.is_met = true;
   lidar.is_deaf = found->is_silent;
-  lidar.was_scanning = found->was_scanning;
+  lidar.was_scanning = found->was_scanning && !wanted.listen_only;
   link.read_as(*lidar.which);
   return state::made;
 }

@@ -19,8 +19,14 @@ constexpr std::int64_t after_wrong_ns = 250 * ms;
 constexpr std::int64_t quiet_ns = 70 * ms;
 /// A device that has not stopped by then gets another stop.
 constexpr std::int64_t stop_ns = 500 * ms;
-/// The number of consecutive letters of a boot text.
-constexpr std::size_t text_letters = 16;
+/// The number of consecutive characters of a boot text, with the end of a line among them.
+constexpr std::size_t text_size = 16;
+
+/// What words consist of: three quarters of a text, and a quarter of the printable bytes of samples.
+bool is_of_word(std::uint8_t byte) noexcept {
+  const unsigned lower = byte | 0x20U;
+  return (lower >= 'a' && lower <= 'z') || (byte >= '0' && byte <= '9') || byte == ' ';
+}
 
 }  // namespace
 
@@ -53,22 +59,33 @@ void event_splitter::give(const event& found, const observer& to) {
   if (gone != nullptr && gone->reason == skip_reason::noise) {
     look_for_text(raw);
   } else {
-    letters_ = 0;
-    in_text_ = false;
+    text_ = {};
   }
   counts_.add(found);
   if (to.event) to.event({found, raw, input_.arrival_ns()});
 }
 
+// A text stands by itself: it begins behind a packet, a response or a line end, never in the middle of other bytes, as
+// the samples of a packet do that another model has sent.
 void event_splitter::look_for_text(bytes raw) {
   for (const std::uint8_t byte : raw) {
-    letters_ = is_of_text(byte) ? letters_ + 1 : 0;
-    if (letters_ == text_letters) {
-      if (!in_text_) ++boots_;
-      in_text_ = true;
+    const bool is_end = byte == '\r' || byte == '\n';
+    if (!is_end && (byte < 0x20 || byte >= 0x7F)) {
+      text_ = {.is_spoiled = true};
+      continue;
     }
+    if (text_.is_spoiled) {
+      text_.is_spoiled = !is_end;
+      continue;
+    }
+    ++text_.size;
+    text_.words += is_of_word(byte) ? 1U : 0U;
+    text_.has_end = text_.has_end || is_end;
+    const bool is_text = text_.size >= text_size && text_.has_end &&
+                         4 * text_.words >= 3 * (text_.size - 2) && !text_.is_counted;
+    if (is_text) ++boots_;
+    text_.is_counted = text_.is_counted || is_text;
   }
-  if (letters_ == 0) in_text_ = false;
 }
 
 link_monitor::link_monitor(std::unique_ptr<transport> opened, std::function<bool()> is_cancelled,
@@ -128,7 +145,7 @@ void link_monitor::listen_for_quiet(std::int64_t quiet, std::int64_t until_ns) {
 }
 
 result<void> link_monitor::write(bytes data) {
-  if (is_over()) return {};
+  if (is_over() || is_mute_) return {};
   survey_.sent(data);
   const auto sent = transport_->write(data, transport_->now_ns() + 500 * ms);
   if (!sent && sent.error().code() != problem::cancelled) error_ = sent.error();
@@ -199,6 +216,7 @@ void link_monitor::await(exchange& made, std::int64_t patience_ns) {
 }
 
 void link_monitor::read_as(const model& which) {
+  sample_bytes_ = sample_bytes();
   which_ = &which;
   boots_before_ += splitter_.boots();
   splitter_ = event_splitter(which.samples);
@@ -219,7 +237,9 @@ result<recognised_lidar> link_monitor::search(const search_options& known, std::
             splitter_.take(data, now_ns(), {});
           },
       .asked = [&](std::uint32_t baud) { questions.emplace_back(baud, now_ns()); }};
-  auto found = lidar_search(*transport_, known, to).run(now_ns() + time_ns);
+  lidar_search search(*transport_, known, to);
+  auto found = search.run(now_ns() + time_ns);
+  if (const stream_survey* const other = search.other()) searched_.other = *other;
   searched_.counts = counts();
   const auto is_there = [&](const auto& each) {
     return each.first == (found ? found->baud : before);
@@ -232,6 +252,7 @@ result<recognised_lidar> link_monitor::search(const search_options& known, std::
                  found.error() == problem::end_of_input || found.error() == problem::interference);
   if (is_lost) error_ = found.error();
   read_as(*which_);
+  if (found && found->was_scanning) sample_bytes_ = sample_size(found->model->samples.layout);
   return found;
 }
 

@@ -79,8 +79,14 @@ class event_splitter {
   std::vector<std::uint8_t> raw_;  // not part of an event yet
   std::size_t raw_begin_ = 0;
   std::uint64_t boots_ = 0;
-  std::size_t letters_ = 0;  // consecutive
-  bool in_text_ = false;
+  /// Characters in a row.
+  struct text_run {
+    std::size_t size = 0;
+    std::size_t words = 0;    // those of words
+    bool has_end = false;     // of a line
+    bool is_spoiled = false;  // it began in the middle of other bytes
+    bool is_counted = false;
+  } text_;
 };
 
 /// A command and the replies to it.
@@ -108,6 +114,7 @@ struct search_record {
   stream_counts counts{};
   std::int64_t asked_ns =
       -1;  ///< The first question at the rate of the lidar, if it may not have been answered.
+  std::optional<stream_survey> other{};  ///< What sends, if it is known and no lidar as it is.
 };
 
 /// *Single thread.* After a loss (error()) nothing arrives, and every call returns immediately.
@@ -130,6 +137,8 @@ class link_monitor {
     link_.set_cut_off_after(pause_ns);
   }
 
+  /// From now on not a byte is sent, whatever is called.
+  void be_mute() noexcept { is_mute_ = true; }
   void send(command code) { static_cast<void>(write(encode(code))); }
   /// Sends a command and waits at most `patience_ns` for the reply, then shortly for a copy of it.
   [[nodiscard]] exchange ask(command code, std::int64_t patience_ns);
@@ -159,6 +168,10 @@ class link_monitor {
   [[nodiscard]] std::uint64_t host_pauses() const noexcept { return host_pauses_; }
   /// Of the same.
   [[nodiscard]] const layout_recogniser& layout() const noexcept { return survey_.layout(); }
+  /// The size of samples in the last packets that showed it, whatever model they were read as; 0: none has.
+  [[nodiscard]] std::size_t sample_bytes() const noexcept {
+    return layout().sample_bytes() != 0 ? layout().sample_bytes() : sample_bytes_;
+  }
   /// Of all that was received and sent, but by search().
   [[nodiscard]] const stream_survey& survey() const noexcept { return survey_; }
   /// Where the bytes come from.
@@ -182,6 +195,7 @@ class link_monitor {
   const model* which_;
   std::optional<error> error_;
   bool cancelled_ = false;
+  bool is_mute_ = false;
   bool has_backlog_ = false;
   std::int64_t read_ns_ = -1;  // the end of the last read
   event_splitter splitter_;
@@ -189,6 +203,7 @@ class link_monitor {
   device_link link_;
   std::array<std::uint8_t, 4096> buffer_{};
   std::int64_t silence_ns_ = 0;
+  std::size_t sample_bytes_ = 0;  // before the last read_as()
   std::uint64_t host_pauses_ = 0;
   std::int64_t host_paused_ns_ = 0;
   stream_survey survey_;

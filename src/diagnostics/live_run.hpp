@@ -16,6 +16,9 @@
 
 namespace g4lidar {
 
+/// So many packets in a row decide the size of samples.
+inline constexpr std::uint32_t certain_packets = 5;
+
 /// One run. *Single thread.*
 class live_run {
  public:
@@ -47,8 +50,12 @@ class live_run {
     bool is_spinning_up = false;         // this was reported as an activity
   };
 
-  /// The stage baud_rate. Returns whether there is a device to continue with.
+  /// The stage baud_rate; `answers` where nothing arrives. Returns whether there is a device to continue with.
   bool find_device();
+  /// Whether commands are sent to the lidar.
+  [[nodiscard]] bool talks() const noexcept {
+    return !log_.options().listen_only && !lidar_.is_one_way();
+  }
   /// The stages answers, identity, health.
   bool interview();
   /// The stage motor. Returns whether the scan runs.
@@ -56,6 +63,10 @@ class live_run {
   void measure_scan();
   void report_stream();
 
+  /// That of the line; 0: behind a network bridge, where nobody has named it.
+  [[nodiscard]] std::uint32_t known_baud() const noexcept;
+  /// Starts it until its packets show the size of its samples.
+  void see_samples();
   /// What CT bytes state about a lidar that answers nothing.
   void read_information();
   /// The motor of a lidar that answered to the start has never turned.
@@ -94,6 +105,8 @@ class live_run {
   bool keeps_alive_ = false;  // with keep-alives, because the protection is on
   first_contact contact_;
   std::int64_t measured_ns_ = 0;
+  std::int64_t gap_ns_ = 0;          // for which a scan was silent, the last time
+  std::int64_t longest_gap_ns_ = 0;  // of those that are not of the host
   unsigned restarts_ = 0;
   bool has_motor_line_ = false;  // DTR
   std::string reading_;          // as what, where the samples decided it

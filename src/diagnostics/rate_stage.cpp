@@ -65,10 +65,10 @@ void find_other_speed(stage_report& rate, double rate_hz, double samples_per_rev
 }
 
 /// The sample rate that the lidar reports, or else the nearest one of `wanted`, if it has identified
-/// itself; 0: neither.
+/// itself as one; 0: neither.
 double nominal_rate_hz(const device_snapshot& known, double measured_hz, const model& wanted) {
   if (known.sample_rate_hz) return *known.sample_rate_hz;
-  if (!known.information) return 0.0;
+  if (!known.information || !detail::may_report(wanted, known.information->model)) return 0.0;
   double nearest_hz = 0.0;
   for (const sample_rate_entry& each : wanted.rates.entries) {
     if (each.hz == 0) continue;

@@ -81,10 +81,26 @@ bool reply_statistics::is_odd(const exchange& one) const {
   return !std::ranges::equal(usual(one.asked), one.reply);
 }
 
+// What a device answers whose number its model does not have, nobody knows.
 bool reply_statistics::is_unknown(command code, const model& which) const {
-  if (!may_be_unknown(code, which)) return false;
+  const auto stated = response_view::from(usual(command::device_info));
+  const auto who = stated ? stated->as_device_info() : std::nullopt;
+  const bool is_other = knows_less_ || (who && !detail::may_report(which, who->model));
+  if (!may_be_unknown(code, which) && !is_other) return false;
   return std::none_of(made_.begin(), made_.end(), [&](const exchange& e) {
     return e.asked == code && (e.is_answered() || e.wrong > 0);
+  });
+}
+
+bool reply_statistics::has_mute_question(const model& which) const {
+  if (answered() == 0) return false;
+  return std::ranges::any_of(made_, [&](const exchange& one) {
+    const auto is_same = [&](const exchange& other) { return other.asked == one.asked; };
+    const auto is_heard = [&](const exchange& other) {
+      return is_same(other) && !other.heard_nothing();
+    };
+    return !is_unknown(one.asked, which) && std::ranges::count_if(made_, is_same) > 1 &&
+           std::ranges::none_of(made_, is_heard);
   });
 }
 

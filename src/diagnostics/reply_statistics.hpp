@@ -39,6 +39,10 @@ class reply_statistics {
   [[nodiscard]] device_snapshot snapshot(const model& which) const;
   /// Adds diagnoses and numbers. If the host paused, a few late replies are its own.
   void judge(stage_report& report, bool host_paused, const model& which) const;
+  /// Whether a query that each lidar like `which` answers was never answered, and others were.
+  [[nodiscard]] bool has_mute_question(const model& which) const;
+  /// The lidar is of another model than the one whose queries it got: what it never answers, it does not know.
+  void may_know_less() noexcept { knows_less_ = true; }
   /// There were replies, and later none.
   [[nodiscard]] bool has_died(const model& which) const;
   /// So many replies were wrong that further commands are useless.
@@ -56,7 +60,7 @@ class reply_statistics {
     unsigned missing_before = 0;  // the missing ones before these
   };
   [[nodiscard]] tally count(const model& which) const;
-  /// A query that firmware need not support, and without any reply.
+  /// A query that firmware, or a lidar whose number is not that of `which`, need not support, and without any reply.
   [[nodiscard]] bool is_unknown(command code, const model& which) const;
   /// Whether the command 93 was answered with an angle.
   [[nodiscard]] bool has_zero(const model& which) const;
@@ -66,6 +70,7 @@ class reply_statistics {
   [[nodiscard]] bytes usual(command code) const;
 
   std::vector<exchange> made_;
+  bool knows_less_ = false;
 };
 
 /// Sends all queries that `which` has, in rounds, and adds the replies. `first_latency_ns`: that of an

@@ -12,6 +12,7 @@ namespace {
 
 /// Narrower sectors without a return are not reported.
 constexpr int least_blind_deg = 30;
+constexpr int full_turn_deg = 360;
 
 }  // namespace
 
@@ -37,23 +38,36 @@ void report_returns(stage_log& log, const stream_statistics& measured, const dev
   const auto arcs = seen.without_return(least_blind_deg, [&](float middle_deg) {
     return wished.has_direction({.angle_deg = bearing_of(middle_deg)});
   });
+  std::string places;
+  std::string options;
   for (const direction_arc& arc : arcs) {
     const auto in_words = [&](int degree) {
       const float turned = bearing_of(static_cast<float>(degree));
-      return std::to_string(std::lround(bearing_deg(turned, wished.in, wanted.turn_deg)));
+      return std::to_string(std::lround(bearing_deg(turned, wished.in, wanted.turn_deg)) %
+                            full_turn_deg);
     };
     std::string from = in_words(arc.from_deg);
     std::string to = in_words(arc.from_deg + arc.width_deg);
-    if (wished.in == frame::robot) std::swap(from, to);
+    if (wished.in == frame::robot) std::swap(from, to);  // it is mirrored
     report.add("nothing_from_deg", from);
     report.add("nothing_to_deg", to);
-    report.remark.append(report.remark.empty() ? "Nothing returned in " : "; in ");
-    report.remark.append(from).append(" to ").append(to);
+    report.add("nothing_width_deg", arc.width_deg);
+    places.append(places.empty() ? "" : "; in ").append(from).append(" to ").append(to);
+    places.append(" degrees (").append(std::to_string(arc.width_deg)).append(" wide)");
+    options.append(options.empty() ? "" : " ")
+        .append("--ignore ")
+        .append(from)
+        .append(":")
+        .append(to);
   }
   if (!arcs.empty()) {
-    report.remark +=
-        " degrees. If a part of the robot is there, leave the directions out with the option "
-        "ignore.";
+    report.remark.append("Nothing returned in ").append(places).append(", ");
+    report.remark += wished.in == frame::robot ? "counter-clockwise from ahead (frame robot)."
+                                               : "clockwise from the cable (frame vendor).";
+    report.remark += arcs.front().width_deg > full_turn_deg / 2
+                         ? " Is the window covered there, or is nothing within the range?"
+                         : " Is something mounted there?";
+    report.remark.append(" Leave it out: ").append(options);
   }
   log.report(std::move(report));
 }

@@ -63,7 +63,9 @@ void running_scan::sent(bytes data, std::int64_t now_ns, std::int64_t silence_ns
   switch (*asked_) {
     case command::start:
       if (is_current(now_ns)) return;
-      happened_.stall |= phase_ == phase::runs && silence_ns >= arrival_statistics::stall_ns;
+      if (phase_ == phase::runs && silence_ns >= arrival_statistics::stall_ns) {
+        happened_.stall_ns = std::max(happened_.stall_ns, silence_ns);
+      }
       return enter(phase::starts);
     case command::stop:
     case command::forced_stop:

@@ -55,8 +55,10 @@ class running_scan {
   }
   /// Whether the device has booted during a scan since the last call.
   [[nodiscard]] bool take_reboot() noexcept { return std::exchange(happened_.reboot, false); }
-  /// The same for a scan that was silent when it was started again.
-  [[nodiscard]] bool take_stall() noexcept { return std::exchange(happened_.stall, false); }
+  /// How long a scan was silent when it was started again, since the last call; 0: there was none.
+  [[nodiscard]] std::int64_t take_stall_ns() noexcept {
+    return std::exchange(happened_.stall_ns, 0);
+  }
   /// Whether many bytes have arrived that belong to nothing, also while no scan is wanted.
   [[nodiscard]] bool has_garbage() const noexcept { return garbage_ > garbage_bytes(*which_); }
 
@@ -71,7 +73,7 @@ class running_scan {
   /// Since they were asked for.
   struct incidents {
     bool reboot = false;
-    bool stall = false;
+    std::int64_t stall_ns = 0;
   };
   /// When they began.
   struct begins {

@@ -30,14 +30,17 @@ std::optional<diagnosis> diagnosis_of(const error& why) {
   }
 }
 
+}  // namespace
+
 /// Adds the diagnoses of this stage.
-void add_those_of(stage_report& report, const std::vector<diagnosis>& found) {
+void running_state::copy::add_to(stage_report& report) const {
+  if (report.detail == error_detail::usual) report.detail = lost_case;
   for (const diagnosis what : found) {
-    if (stage_of(what) == report.stage) report.find(what);
+    if (stage_of(what) != report.stage) continue;
+    report.find(what);
+    if (what == diagnosis::stalls && stall_ns > 0) report.add("silence_ms", stall_ns / ms);
   }
 }
-
-}  // namespace
 
 void running_state::add(const lidar_event& what) {
   using enum lidar_event::kind;
@@ -88,6 +91,7 @@ void running_state::add(const error& why) {
   if (!found) return;
   lost_ = found;
   why_lost_ = cause_of(why);
+  lost_case_ = why.detail();
 }
 
 running_state::copy running_state::take_copy() const {
@@ -100,7 +104,10 @@ running_state::copy running_state::take_copy() const {
             scan_.seconds(),
             baud_,
             {},
-            name_};
+            name_,
+            is_device_,
+            lost_case_,
+            lost_ == diagnosis::stalls ? detail::saturating_sub(now_ns_, heard_ns_) : stall_ns_};
   if (lost_ && !found_.has(*lost_, detail::saturating_sub(now_ns_, window_ns_)))
     made.found.push_back(*lost_);
   if (!name_.empty()) made.port.add("address", name_);
@@ -113,6 +120,8 @@ std::vector<stage_report> running_state::stages(const point_filter& directions) 
   copy of = take_copy();
   const diagnostic_options none;
   stage_log log(none);
+  log.come_from(of.name);
+  if (!of.is_device) log.come_by(byte_path::file);
   const bool is_explained =
       std::ranges::any_of(of.found,
                           [](diagnosis what) {
@@ -122,14 +131,14 @@ std::vector<stage_report> running_state::stages(const point_filter& directions) 
                           }) ||
       of.measured.tally().arrivals.longest_host_pause_ns() >= arrival_statistics::stall_ns;
   if (is_explained) std::erase(of.found, diagnosis::stalls);
-  const auto add_found = [&] { add_those_of(log.stages().back(), of.found); };
+  const auto add_found = [&] { of.add_to(log.stages().back()); };
   log.report(std::move(of.port));
   add_found();
   for (const auto where :
        {diagnostic_stage::permission, diagnostic_stage::holder, diagnostic_stage::baud_rate,
         diagnostic_stage::answers, diagnostic_stage::identity}) {
     stage_report report{.stage = where};
-    add_those_of(report, of.found);
+    of.add_to(report);
     if (!report.diagnoses.empty()) log.report(std::move(report));
   }
   static_cast<void>(report_health(log, of.known.condition));
@@ -141,7 +150,7 @@ std::vector<stage_report> running_state::stages(const point_filter& directions) 
     judge_motor(motor, of.measured);
     log.report(std::move(motor));
     add_found();
-    add_those_of(stream, of.found);
+    of.add_to(stream);
     judge_stream(stream, of.measured, of.seconds);
     log.report(std::move(stream));
     if (of.seconds < shortest_rate_s) {
@@ -149,7 +158,7 @@ std::vector<stage_report> running_state::stages(const point_filter& directions) 
     } else {
       report_rate(log, of.measured, of.known, *of.which);
     }
-    report_loss(log, of.measured, *of.which);
+    report_loss(log, of.measured, *of.which, nullptr, of.seconds);
     report_returns(log, of.measured, of.known, *of.which, directions);
     report_latency(log, of.measured, of.baud, of.name);
     return std::move(log.stages());

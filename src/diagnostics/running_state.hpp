@@ -85,6 +85,7 @@ class running_state {
     now_ns_ = now_ns;
     // A port that gives bytes is there, also where no scan runs.
     if (lost_ && stage_of(*lost_) == diagnostic_stage::port) back();
+    heard_ns_ = now_ns;
     scan_.received(what, data);
     follow_scan();
   }
@@ -107,6 +108,11 @@ class running_state {
     std::uint32_t baud;
     stage_report port;
     std::string name;
+    bool is_device;
+    error_detail lost_case;
+    std::int64_t stall_ns;
+
+    void add_to(stage_report& report) const;
   };
   [[nodiscard]] copy take_copy() const;
 
@@ -114,10 +120,14 @@ class running_state {
   void back() {
     lost_.reset();
     why_lost_.clear();
+    lost_case_ = error_detail::usual;
   }
   void follow_scan() {
     if (scan_.take_reboot()) found_.add(diagnosis::reboots, now_ns_);
-    if (scan_.take_stall()) found_.add(diagnosis::stalls, now_ns_);
+    if (const std::int64_t stall_ns = scan_.take_stall_ns(); stall_ns > 0) {
+      found_.add(diagnosis::stalls, now_ns_);
+      stall_ns_ = stall_ns;
+    }
     if (scan_.has_garbage()) found_.add(diagnosis::wrong_baud_rate, now_ns_);
     // Packets come again: it had ended by itself, or by a boot.
     if (scan_.now() >= running_scan::phase::speeds_up && std::exchange(is_restarted_, false) &&
@@ -132,7 +142,10 @@ class running_state {
   running_scan scan_;
   found_diagnoses found_;
   std::optional<diagnosis> lost_{};  // why the lidar cannot be used now
+  std::int64_t stall_ns_ = 0;        // the last one after which it was started again
+  std::int64_t heard_ns_ = 0;        // when the last bytes came
   std::string why_lost_{};
+  error_detail lost_case_ = error_detail::usual;
   bool is_restarted_ = false;  // the driver has restarted it, and no packet has come yet
   std::uint64_t reconnects_ = 0;
   std::int64_t now_ns_ = 0;

@@ -107,8 +107,7 @@ bool live_run::is_of_other_size() const {
   const layout_recogniser& seen = link_.layout();
   const std::size_t size = seen.sample_bytes();
   const std::size_t own = sample_size(lidar_.which->samples.layout);
-  constexpr std::uint32_t in_a_row = 5;
-  return size != 0 && size != own && seen.votes(own) == 0 && seen.votes(size) >= in_a_row;
+  return size != 0 && size != own && seen.votes(own) == 0 && seen.votes(size) >= certain_packets;
 }
 
 /// The number may be that of another model: its packets decide. Whether they are read in another way from here on.
@@ -122,9 +121,10 @@ bool live_run::follow_samples() {
   if (fitting.empty()) return false;
   const std::string samples = "samples have " + std::to_string(size) + " bytes, as those of " +
                               one_of(*fitting.front()) + ": it is read as that one.";
-  reading_ = device_.information
-                 ? "Its number is that of " + one_of(*lidar_.which) + ", and its " + samples
-                 : "Its " + samples;
+  const bool has_number =
+      device_.information && detail::may_report(*lidar_.which, device_.information->model);
+  reading_ = has_number ? "Its number is that of " + one_of(*lidar_.which) + ", and its " + samples
+                        : "Its " + samples;
   lidar_.which = fitting.front();
   lidar_.candidates = std::move(fitting);
   link_.read_as(*lidar_.which);
@@ -134,7 +134,7 @@ bool live_run::follow_samples() {
 bool live_run::start_motor() {
   stage_report motor{.stage = diagnostic_stage::motor};
   measured_ = stream_statistics(*lidar_.which);
-  const bool is_started = !lidar_.is_deaf && !lidar_.is_one_way();
+  const bool is_started = !lidar_.is_deaf && talks();
   if (is_started) {
     start_scan();
   } else {
@@ -158,6 +158,7 @@ bool live_run::start_motor() {
     if (what == fate::dead) {
       const bool is_of_start = is_started && !replies_.has_died(*lidar_.which);
       motor.find(is_of_start ? diagnosis::brown_out : diagnosis::stalls);
+      motor.add("silence_ms", (link_.now_ns() - std::max(link_.heard_ns(), started_.sent_ns)) / ms);
     }
     if (what == fate::answers) {
       motor.find(had_packets ? diagnosis::reboots : of_never_started());
@@ -169,7 +170,12 @@ bool live_run::start_motor() {
   }
   if (state == scan_state::runs) judge_motor(motor, measured_);
   if (!reading_.empty()) {
-    if (device_.information) motor.find(diagnosis::other_number);
+    const auto is_told = [](const stage_report& each) {
+      return !each.diagnoses.empty() && each.diagnoses.front() == diagnosis::other_number;
+    };
+    if (device_.information && std::ranges::none_of(log_.stages(), is_told)) {
+      motor.find(diagnosis::other_number);
+    }
     motor.remark = reading_;
   }
   if (lidar_.is_named && is_of_other_size()) {
@@ -191,21 +197,30 @@ bool live_run::is_host_busy() const noexcept { return link_.host_paused_ns() > s
 
 void live_run::find_stall() {
   stream_.find(is_host_busy() ? diagnosis::host_busy : diagnosis::stalls);
+  if (!is_host_busy()) longest_gap_ns_ = std::max(longest_gap_ns_, gap_ns_);
 }
 
 // It gets no command before it has had the time to continue by itself.
 live_run::fate live_run::fate_of_silent() {
   const std::uint64_t before = link_.counts().packets;
+  const std::int64_t since_ns = std::max(link_.heard_ns(), started_.sent_ns);
   std::int64_t until_ns = link_.now_ns() + signs_ns;
-  link_.listen(until_ns, {.event = [&](const observed_event& observed) {
-                 follow(observed);
-                 if (link_.counts().packets > before) until_ns = 0;
-               }});
+  std::int64_t back_ns = 0;
+  observer to;
+  to.event = [&](const observed_event& observed) {
+    follow(observed);
+    if (link_.counts().packets > before) until_ns = 0;
+  };
+  to.arrival = [&](const reading& observed) {
+    if (back_ns == 0) back_ns = observed.arrival_ns;
+  };
+  link_.listen(until_ns, to);
+  gap_ns_ = (back_ns != 0 ? back_ns : link_.now_ns()) - since_ns;
   if (link_.counts().packets > before) return fate::resumed;
   if (link_.is_over()) return fate::over;
   if (link_.boots() > started_.boots_before || started_.has_introduced_itself) return fate::booted;
   constexpr int attempts = 3;
-  for (int i = 0; i < attempts && !link_.is_over() && !lidar_.is_one_way(); ++i) {
+  for (int i = 0; i < attempts && !link_.is_over() && talks(); ++i) {
     // Some models ignore queries as long as they scan.
     if (i == attempts - 1) link_.stop();
     const exchange made = link_.ask(command::device_info, 800 * ms);
@@ -239,8 +254,9 @@ bool live_run::revive(std::int64_t& until_ns) {
       stream_.find(diagnosis::reboots);
       return false;
     case fate::dead:
-      stream_.find(lasted_ns < of_the_start_ns && !lidar_.is_one_way() ? diagnosis::brown_out
-                                                                       : diagnosis::stalls);
+      stream_.find(lasted_ns < of_the_start_ns && talks() ? diagnosis::brown_out
+                                                          : diagnosis::stalls);
+      longest_gap_ns_ = std::max(longest_gap_ns_, link_.now_ns() - link_.heard_ns());
       return false;
     case fate::over:
       return false;
@@ -276,6 +292,8 @@ bool live_run::restart_scan(std::int64_t& until_ns) {
 }
 
 void live_run::report_stream() {
+  if (link_.sample_bytes() != 0) stream_.add("bytes_per_sample", link_.sample_bytes());
+  if (longest_gap_ns_ > 0) measured_.take(reading{0, link_.now_ns(), longest_gap_ns_});
   judge_stream(stream_, measured_, static_cast<double>(measured_ns_) / 1e9);
   if (restarts_ > 0) stream_.add("restarts", restarts_);
   add_failure(stream_);

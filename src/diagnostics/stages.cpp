@@ -24,8 +24,14 @@ double held_back_limit_of_ms(std::uint32_t baud) noexcept {
 constexpr std::uint64_t few_events = 2;
 constexpr double few_lost = 0.002;
 
-/// "The number 15 is that of a G2; that of an X4 is 6."
-std::string other_number(std::uint8_t id, const model& wanted) {
+/// "The packets have 4 bytes per sample; those of a G4 have 2."
+std::string other_samples(std::size_t size, const model& wanted) {
+  return "The packets have " + std::to_string(size) + " bytes per sample; those of " +
+         one_of(wanted) + " have " + std::to_string(sample_size(wanted.samples.layout)) + ".";
+}
+
+/// "The number 15 is that of a G2; that of an X4 is 6.": the second half if a model was stated.
+std::string other_number(std::uint8_t id, const model& wanted, bool is_stated) {
   const std::string number = "The number " + std::to_string(id) + " is that of ";
   const std::string_view product = other_product(id);
   const auto having = models_that_fit({.id = id});
@@ -37,8 +43,8 @@ std::string other_number(std::uint8_t id, const model& wanted) {
   } else {
     text += one_of(*having.front());
   }
-  text += "; that of " + one_of(wanted) + " is " + std::to_string(wanted.ids[0]);
-  if (wanted.ids[1] != 0) text += " or " + std::to_string(wanted.ids[1]);
+  if (is_stated) text += "; that of " + one_of(wanted) + " is " + std::to_string(wanted.ids[0]);
+  if (is_stated && wanted.ids[1] != 0) text += " or " + std::to_string(wanted.ids[1]);
   text += ".";
   if (product.empty() && having.empty())
     text += " Please report it, with the file of g4-dump doctor --report.";
@@ -62,6 +68,15 @@ constexpr std::array<std::pair<diagnosis, diagnostic_stage>, 14> last_of_stages{
      {diagnosis::no_returns, diagnostic_stage::returns},
      {diagnosis::usb_latency, diagnostic_stage::usb_latency}}};
 
+/// Whether a lidar like `which` can have measured so many samples in this time; 0 s: not known, and true.
+bool may_measure_in(const model& which, double samples, double seconds) noexcept {
+  constexpr double far = 2.0;  // beyond the highest rate of the model
+  double most_hz = std::max(which.rates.nominal_hz, which.rates.most_seen_hz);
+  for (const sample_rate_entry& each : which.rates.entries)
+    most_hz = std::max<double>(most_hz, each.hz);
+  return seconds <= 0.0 || most_hz <= 0.0 || samples <= far * most_hz * seconds;
+}
+
 }  // namespace
 
 std::string one_of(const model& which) {
@@ -84,7 +99,7 @@ bool refuses_number(const diagnostic_options& options, const model& stated, std:
 }
 
 bool report_identity(stage_log& log, const std::optional<device_information>& known,
-                     const model& wanted, std::uint32_t baud) {
+                     const model& wanted, std::uint32_t baud, std::size_t sample_bytes) {
   if (!known) {
     log.skip(diagnostic_stage::identity, "There is no device information.");
     return true;
@@ -103,7 +118,14 @@ bool report_identity(stage_log& log, const std::optional<device_information>& kn
                                          : !other_product(known->model).empty();
   if (!is_wanted) {
     identity.find(is_surely_other ? diagnosis::other_device : diagnosis::other_number);
-    identity.remark = other_number(known->model, wanted);
+    if (!other_product(known->model).empty()) identity.detail = error_detail::unsupported_product;
+    identity.remark = other_number(known->model, wanted, is_stated);
+    const std::size_t own = sample_size(wanted.samples.layout);
+    if (is_surely_other && sample_bytes != 0 && sample_bytes != own) {
+      identity.detail = error_detail::other_samples;
+      identity.add("bytes_per_sample", sample_bytes);
+      identity.remark += " " + other_samples(sample_bytes, wanted);
+    }
   }
   log.report(std::move(identity));
   return is_wanted || !is_surely_other;
@@ -156,14 +178,20 @@ void judge_motor(stage_report& motor, const stream_statistics& measured) {
 }
 
 void report_loss(stage_log& log, const stream_statistics& measured, const model& wanted,
-                 const stream_survey* seen, bool is_network) {
+                 const stream_survey* seen, double seconds) {
   if (measured.tally().arrivals.bytes() == 0)
     return log.skip(diagnostic_stage::loss, "Nothing arrived.");
   stage_report loss{.stage = diagnostic_stage::loss};
   const double all = static_cast<double>(measured.tally().samples + measured.tally().lost);
   const double lost = static_cast<double>(measured.tally().lost) / std::max(all, 1.0);
-  loss.add("lost_percent", 100.0 * lost);
-  loss.add("samples_lost", measured.tally().lost);
+  const bool is_possible = may_measure_in(wanted, all, seconds);
+  if (is_possible) {
+    loss.add("lost_percent", 100.0 * lost);
+    loss.add("samples_lost", measured.tally().lost);
+  } else {
+    loss.remark =
+        "The angles go back and forth, as those of no head that turns: what is lost is not known.";
+  }
   for (const auto reason : {skip_reason::noise, skip_reason::bad_header, skip_reason::bad_checksum,
                             skip_reason::truncated}) {
     loss.add(std::string("skipped_") + name_of(reason), measured.tally().counts.skipped(reason));
@@ -185,7 +213,9 @@ void report_loss(stage_log& log, const stream_statistics& measured, const model&
     const std::string_view of_the_line = describe(diagnosis::line_noise).advice;
     const bool is_changed = seen != nullptr && seen->change() != stream_change::none;
     for (const diagnosis what : diagnoses_of(measured)) {
-      const bool is_of_bridge = is_network && describe(what).advice == of_the_line;
+      if (what == diagnosis::packets_lost && !is_possible) continue;
+      const bool is_of_bridge =
+          log.by() == byte_path::network && describe(what).advice == of_the_line;
       loss.find(is_changed || is_of_bridge ? diagnosis::changed_bytes : what);
     }
     if (is_changed && !loss.diagnoses.empty()) loss.remark = seen->finding();
@@ -225,14 +255,17 @@ bool find_other_layout(stage_report& report, const layout_recogniser& seen, cons
   if (size == 0 || size == wanted_size) return false;
   report.add("bytes_per_sample", size);
   report.find(diagnosis::other_device);
-  report.remark = "The packets have " + std::to_string(size) + " bytes per sample; those of " +
-                  one_of(wanted) + " have " + std::to_string(wanted_size) + ".";
+  report.detail = error_detail::other_samples;
+  report.remark = other_samples(size, wanted);
   return true;
 }
 
 void report_latency(stage_log& log, const stream_statistics& measured, std::uint32_t baud,
                     std::string_view name) {
-  if (name.starts_with("tcp:") || is_pty(std::string(name))) {
+  if (log.by() == byte_path::network) {
+    return log.skip(diagnostic_stage::usb_latency, "It does not apply to a network bridge.");
+  }
+  if (is_pty(std::string(name))) {
     return log.skip(diagnostic_stage::usb_latency, "There is no USB bridge in this connection.");
   }
   if (baud == 0 || !measured.tally().arrivals.has_delays()) {

@@ -25,7 +25,14 @@ class stage_log {
  public:
   explicit stage_log(const diagnostic_options& options) : options_(options) {}
 
+  /// The bytes come on this way, as far as it is known from the name of their source.
+  void come_by(byte_path by) noexcept { by_ = by; }
+  void come_from(std::string_view name) noexcept {
+    if (name.starts_with("tcp:")) by_ = byte_path::network;
+  }
+  [[nodiscard]] byte_path by() const noexcept { return by_; }
   void report(stage_report done) {
+    done.by = by_;
     if (options_.on_stage) options_.on_stage(done);
     stages_.push_back(std::move(done));
   }
@@ -46,6 +53,7 @@ class stage_log {
 
  private:
   const diagnostic_options& options_;
+  byte_path by_ = byte_path::line;
   std::vector<stage_report> stages_;
 };
 
@@ -70,9 +78,9 @@ void examine_file(const std::string& source, stage_log& log);
 /// Whether a lidar that was named is refused for its number, as lidar::open() refuses it. `baud` 0: not known.
 [[nodiscard]] bool refuses_number(const diagnostic_options& options, const model& stated,
                                   std::uint8_t number, std::uint32_t baud);
-/// identity; false for another model than `wanted`, surely. `baud` 0: not known.
+/// identity; false for another model than `wanted`, surely. `baud`, `sample_bytes` 0: not known.
 bool report_identity(stage_log& log, const std::optional<device_information>& known,
-                     const model& wanted, std::uint32_t baud);
+                     const model& wanted, std::uint32_t baud, std::size_t sample_bytes = 0);
 /// health; false if the device reports an error.
 bool report_health(stage_log& log, const std::optional<health>& known);
 /// Up to this number of packets the motor cannot be evaluated.
@@ -82,10 +90,9 @@ void judge_motor(stage_report& motor, const stream_statistics& measured);
 /// rate, by the rates of `wanted`.
 void report_rate(stage_log& log, const stream_statistics& measured, const device_snapshot& known,
                  const model& wanted);
-/// `seen`: the same bytes; null: they were not examined. `is_network`: they came through a network, not from a line of
-/// this computer.
+/// `seen`: the same bytes; null: they were not examined. `seconds`: how long they took; 0: not known.
 void report_loss(stage_log& log, const stream_statistics& measured, const model& wanted,
-                 const stream_survey* seen = nullptr, bool is_network = false);
+                 const stream_survey* seen = nullptr, double seconds = 0.0);
 /// returns: whether something came back, and the sectors from which nothing did, but for directions that the user
 /// leaves out.
 void report_returns(stage_log& log, const stream_statistics& measured, const device_snapshot& known,

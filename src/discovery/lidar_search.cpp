@@ -118,7 +118,7 @@ lidar_search::found lidar_search::ask(std::span<const std::uint32_t> rates, std:
 
 /// Whether the port has this rate now, as far as it has one.
 result<bool> lidar_search::tune(std::uint32_t baud) {
-  heard_ = {};
+  has_fixed_rate_ ? heard_.part() : heard_.tune();
   device_.reset();
   if (std::ranges::find(tried_, baud) == tried_.end()) tried_.push_back(baud);
   const auto set = port_.set_baud(baud);
@@ -149,12 +149,12 @@ lidar_search::found lidar_search::visit(std::uint32_t baud, std::int64_t listen_
   if (heard_.layout().sample_bytes() != 0) return judge_stream();
   if (is_announced()) return judge_reply();
   if (!is_decided()) heard_.finish();
+  note_other();
   if (const other_maker* const other = heard_.maker()) {
-    return failure(task::asking, problem::other_device,
-                   std::string(port_.name()).append(", ").append(other->product), 0,
-                   error_detail::other_maker);
+    std::string subject = std::string(port_.name()).append(", ").append(other->product);
+    if (!other->driver.empty()) subject.append(" (its usual driver is ").append(other->driver).append(")");
+    return failure(task::asking, problem::other_device, subject, 0, error_detail::other_maker);
   }
-  if (heard_.text() != text_kind::none) finding_ = heard_.finding();
   if (heard_.count() >= stream_bytes) ++sending_;
   return std::nullopt;
 }
@@ -165,14 +165,21 @@ lidar_search::found lidar_search::question(std::uint32_t baud, std::int64_t wait
   if (!tuned) return tl::unexpected(tuned.error());
   if (!*tuned) return std::nullopt;
   const auto ask = encode(command::device_info);
-  all_heard_.sent(ask);
+  heard_.sent(ask);
   if (observer_.asked) observer_.asked(port_.baud());
   const auto sent = port_.write(ask, port_.now_ns() + write_ns);
   if (!sent && sent.error() != problem::timeout) return tl::unexpected(sent.error());
   const auto is_enough = [this] { return device_ || heard_.layout().sample_bytes() != 0; };
   if (auto done = listen(in_ns(wait_ns), is_enough); !done) return tl::unexpected(done.error());
   if (heard_.layout().sample_bytes() != 0) return judge_stream();
-  return device_ ? judge_reply() : found();
+  if (device_) return judge_reply();
+  note_other();
+  return std::nullopt;
+}
+
+/// What is sent is no lidar, or was changed on its way.
+void lidar_search::note_other() {
+  if (!heard_.finding().empty()) other_ = heard_;
 }
 
 /// For a motor that DTR drives: it needs an edge. Until it turns there is time for the questions at other rates.
@@ -200,7 +207,6 @@ lidar_search::found lidar_search::pulse() {
 }
 
 void lidar_search::take(bytes input) {
-  all_heard_.received(input);
   heard_.received(input);
   if (!device_) device_ = heard_.device();
 }
@@ -214,19 +220,20 @@ tl::unexpected<error> lidar_search::not_found() const {
   std::string subject(port_.name());
   if (options_.model != nullptr) subject.append(", ").append(options_.model->name);
   if (options_.listen_only) subject.append(", only listened to");
-  if (!finding_.empty()) {
-    return failure(task::asking, problem::garbage, subject.append(": ").append(finding_));
+  if (other_) {
+    return failure(task::asking, problem::garbage, subject.append(": ").append(other_->finding()));
   }
-  subject.append(all_heard_.text());
+  const unrecognised_bytes& all = heard_.all();
+  subject.append(all.text());
   if (tried_.size() > 1 || options_.baud != 0) {
-    std::string_view before = all_heard_.count() > 0 ? ", at " : " at ";
+    std::string_view before = all.count() > 0 ? ", at " : " at ";
     for (const std::uint32_t baud : tried_) {
       subject.append(before).append(std::to_string(baud));
       before = ", ";
     }
     subject.append(" baud");
   }
-  if (all_heard_.count() > 0) return failure(task::asking, problem::garbage, subject);
+  if (all.count() > 0) return failure(task::asking, problem::garbage, subject);
   const auto why = options_.model == nullptr ? error_detail::searched : error_detail::usual;
   return failure(task::asking, problem::silence, subject, 0, why);
 }

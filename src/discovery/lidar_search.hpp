@@ -38,6 +38,8 @@ class lidar_search {
   lidar_search(transport& port, const search_options& options, search_observer observer = {});
 
   [[nodiscard]] result<recognised_lidar> run(std::int64_t deadline_ns);
+  /// At the last rate at which something was heard that is known and no lidar as it is; null: nothing was.
+  [[nodiscard]] const stream_survey* other() const noexcept { return other_ ? &*other_ : nullptr; }
 
  private:
   /// Two revolutions at 4 Hz: the CT bytes of one of them are complete.
@@ -60,6 +62,7 @@ class lidar_search {
   template <class Enough>
   [[nodiscard]] result<void> listen(std::int64_t until_ns, Enough is_enough);
   void take(bytes input);
+  void note_other();
 
   [[nodiscard]] found judge_stream();
   [[nodiscard]] found judge_silent(lidar_signs known, std::int64_t until_ns);
@@ -93,8 +96,7 @@ class lidar_search {
   std::size_t sending_ = 0;  // rates at which something sends
   stream_survey heard_;      // at this rate
   std::optional<device_information> device_;
-  unrecognised_bytes all_heard_;
-  std::string finding_;  // what sends something else at a rate
+  std::optional<stream_survey> other_;
 };
 
 template <class Enough>

@@ -118,7 +118,8 @@ result<void> system_connector::search_first(search_options known) {
             .baud = lidar->baud,
             .is_silent = lidar->is_silent,
             .was_stopped = lidar->was_scanning && !lidar->is_silent && !known.listen_only &&
-                           named_->link == link_kind::two_way};
+                           named_->link == link_kind::two_way,
+            .speaks_telnet = lidar->speaks_telnet};
   if (lidar->baud != 0) baud_ = lidar->baud;
   if (named_->link == link_kind::one_way) find_place();
   searched_ = std::move(opened);

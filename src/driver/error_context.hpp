@@ -97,7 +97,7 @@ class error_context {
   error_context& add_speed(const model& which, std::string_view before) noexcept {
     if (which.frequency.pin.empty()) return *this;
     add(before).add("a voltage or PWM at its pin ").add(which.frequency.pin);
-    return add("; USB boards leave it at their default");
+    return add("; most boards leave it at their default");
   }
 
   // NOLINTNEXTLINE(google-explicit-constructor): it is a text.

@@ -37,6 +37,10 @@ class kept_recognition {
     if (number != 0) what_.number = number;
     if (baud != 0) what_.baud = baud;
   }
+  /// The search may have seen it before.
+  void set_bridge(bool speaks_telnet) noexcept {
+    what_.speaks_telnet = what_.speaks_telnet || speaks_telnet;
+  }
   /// Its samples have another size than those of its number: the model is one that has, at this rate. Null: there is
   /// none. *Allocates.*
   [[nodiscard]] const model* follow(std::size_t sample_bytes, std::uint32_t baud, bool answers) {

@@ -92,7 +92,7 @@ result<void> listening_driver::try_pulse(bool is_silent) {
 
 // NOLINTNEXTLINE(misc-no-recursion): it leaves the stage, so look() calls it once
 result<void> listening_driver::recognised() {
-  is_recognised_ = true;
+  become_recognised();
   stage_ = live_stage::idle;
   if (reconnection_.end()) report(lidar_event::kind::reconnected);
   if (!wants_scan_) return {};

@@ -151,7 +151,7 @@ result<void> live_driver::answered(const device_information& who) {
   if (auto known = identified(who); !known) return known;
   const model& like = with_firmware(*options_.model, who);
   if (&like != options_.model) stream_.talk().reset(&like);
-  is_recognised_ = true;
+  become_recognised();
   stage_ = live_stage::idle;
   if (wants_scan_) {
     stage_ = live_stage::preparing;

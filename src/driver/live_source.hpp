@@ -65,6 +65,12 @@ class live_source : public scan_source {
   /// The device will not be controlled any more: what has been begun is forgotten.
   virtual void leave() noexcept = 0;
 
+  /// The device has identified itself.
+  void become_recognised() noexcept {
+    is_recognised_ = true;
+    recognised_.set_bridge(stream_.speaks_telnet());
+  }
+
   lidar_options options_;
   live_stage stage_ = live_stage::closed;
   live_stream stream_;

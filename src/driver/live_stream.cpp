@@ -33,6 +33,7 @@ void live_stream::begin() {
   link_.follow(on);
   reported_.reset();
   heard_ = {};
+  changes_ = {};
   of_.from.reset(on.baud(), on.kept_bytes(), now_ns());
   of_.pipeline.follow(on.baud());
   of_.motor.forget();
@@ -72,7 +73,9 @@ result<void> live_stream::receive(std::int64_t deadline_ns) {
     return of_.from.receive(on, how_to_read(), input.held(), input.missing(), deadline_ns);
   });
   if (!got) return tl::unexpected(got.error());
-  heard_.received(of_.from.buffer().first(got->count));
+  const bytes data = of_.from.buffer().first(got->count);
+  heard_.received(data);
+  if (of_.stage == live_stage::identifying) changes_.take(data);
   if (got->count == 0 && link_.cut_off()) record(recorded_event::kind::cut);
   return {};
 }

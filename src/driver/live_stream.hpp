@@ -15,6 +15,7 @@
 #include "point_pipeline.hpp"
 #include "receiver.hpp"
 #include "spin_up.hpp"
+#include "survey/change_signs.hpp"
 #include "survey/unrecognised_bytes.hpp"
 
 namespace g4lidar {
@@ -42,6 +43,10 @@ class live_stream {
   /// What was received and sent since the connection was opened, or since begin_request().
   [[nodiscard]] const unrecognised_bytes& heard() const noexcept { return heard_; }
   void begin_request() noexcept { heard_ = {}; }
+  /// Whether the bridge has negotiated as telnet does, when the connection began.
+  [[nodiscard]] bool speaks_telnet() const noexcept {
+    return changes_.change() == stream_change::telnet;
+  }
 
   /// The connection was opened.
   void begin();
@@ -99,6 +104,7 @@ class live_stream {
   motor_kind motor_;
   identity_reader reported_;
   unrecognised_bytes heard_;
+  change_signs changes_;  // of what came before the device was identified
   std::uint32_t sample_rate_hz_;
   std::int64_t motor_ready_ns_ = 0;
   bool is_line_high_ = false;  // DTR, as far as it is known

@@ -52,7 +52,8 @@ class reader_view {
   /// As which model the lidar is read. Allocates where that has changed.
   void show(const recognition& now) {
     const auto facts_follow_from = [](const recognition& from) {
-      return std::tuple(from.model, from.by, from.number, from.baud, from.is_silent);
+      return std::tuple(from.model, from.by, from.number, from.baud, from.is_silent,
+                        from.speaks_telnet);
     };
     if (facts_follow_from(now) == facts_follow_from(shown_)) return;
     shown_ = now;

@@ -7,6 +7,7 @@
 #include "core/number_text.hpp"
 #include "discovery/model_choice.hpp"
 #include "g4lidar/lidar_options.hpp"
+#include "survey/change_signs.hpp"
 
 namespace g4lidar {
 namespace {
@@ -65,6 +66,7 @@ std::string contradictions_of(const recognition& what) {
     add("The lidar sends packets as of " + one + ", and answers no command: it can be read only. " +
         "Maybe its receiving wire is not connected, it is a one-way model, or a COIN-D4 (LDS-03).");
   }
+  if (what.speaks_telnet) add(std::string(words_for(stream_change::telnet)));
   return all;
 }
 

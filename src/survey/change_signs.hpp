@@ -6,6 +6,7 @@
 #include <bitset>
 #include <cstddef>
 #include <cstdint>
+#include <string_view>
 
 #include "g4lidar/core/bytes.hpp"
 
@@ -83,5 +84,8 @@ class change_signs {
     std::uint64_t with_20 = 0;
   } headers_;
 };
+
+/// What it is and what to do, in sentences; of one that takes characters without them. Empty: none. Valid forever. *Pure.*
+[[nodiscard]] std::string_view words_for(stream_change what) noexcept;
 
 }  // namespace g4lidar

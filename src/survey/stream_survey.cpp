@@ -64,6 +64,31 @@ std::string list_of(const change_signs::control_set& controls) {
   return text;
 }
 
+std::string words_for(const change_signs& seen) {
+  const stream_change what = seen.change();
+  std::string text(words_for(what));
+  if (what >= stream_change::flow_control)
+    text.insert(0, "No " + list_of(seen.missing()) + " arrived: ");
+  if (what == stream_change::recoded) text.append(" ").append(again);
+  return text;
+}
+
+std::string_view words_for(echo_kind what) noexcept {
+  switch (what) {
+    case echo_kind::loop_back:
+      return "Nothing arrives but what was sent: the wires of both directions are connected, or "
+             "the bridge echoes. No lidar answers.";
+    case echo_kind::console:
+      return "What was sent comes back, and text: a console (a login, a shell, a boot loader) is "
+             "at this port, and no lidar.";
+    case echo_kind::none:
+      break;
+  }
+  return {};
+}
+
+}  // namespace
+
 std::string_view words_for(stream_change what) noexcept {
   switch (what) {
     case stream_change::telnet:
@@ -96,31 +121,6 @@ std::string_view words_for(stream_change what) noexcept {
   }
   return {};
 }
-
-std::string words_for(const change_signs& seen) {
-  const stream_change what = seen.change();
-  std::string text(words_for(what));
-  if (what >= stream_change::flow_control)
-    text.insert(0, "No " + list_of(seen.missing()) + " arrived: ");
-  if (what == stream_change::recoded) text.append(" ").append(again);
-  return text;
-}
-
-std::string_view words_for(echo_kind what) noexcept {
-  switch (what) {
-    case echo_kind::loop_back:
-      return "Nothing arrives but what was sent: the wires of both directions are connected, or "
-             "the bridge echoes. No lidar answers.";
-    case echo_kind::console:
-      return "What was sent comes back, and text: a console (a login, a shell, a boot loader) is "
-             "at this port, and no lidar.";
-    case echo_kind::none:
-      break;
-  }
-  return {};
-}
-
-}  // namespace
 
 std::string stream_survey::finding() const {
   if (const other_maker* const other = maker()) {

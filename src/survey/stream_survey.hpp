@@ -52,6 +52,13 @@ class stream_survey {
     count_ = 0;
   }
 
+  /// The same, and the baud rate is another one: so far all() and echo() alone remain.
+  void tune() noexcept {
+    part();
+    text_ = {};
+    change_ = {};
+  }
+
   /// Packets of which layout; since part().
   [[nodiscard]] const layout_recogniser& layout() const noexcept { return layout_; }
   /// Who sends frames of another protocol; null: nobody is recognised. Valid forever.

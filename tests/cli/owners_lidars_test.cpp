@@ -53,6 +53,8 @@ TEST_F(OwnersLidar, ANumberThatNoModelHas_IsReadAsItWasNamed_OrAsItsSamplesShow)
     const outcome done = run(words);
     EXPECT_EQ(done.code, 0) << done.err;
     EXPECT_THAT(done.err, HasSubstr("153, which no known model has"));
+    EXPECT_EQ(done.err.find("known model has"), done.err.rfind("known model has")) << done.err;
+    EXPECT_THAT(done.err, Not(HasSubstr("a G4")));
     EXPECT_THAT(done.err, HasSubstr("Please report it"));
     EXPECT_THAT(done.out, HasSubstr("whole"));
   }
@@ -95,6 +97,35 @@ TEST_F(OwnersLidar, ThatWaitsForCommandsIsSilentWhereItIsOnlyListenedTo) {
   const outcome file = run({"scan", "--listen", path("walk.mcap")});
   EXPECT_EQ(file.code, 2);
   EXPECT_THAT(file.err, HasSubstr("--listen"));
+}
+
+TEST_F(OwnersLidar, DoctorListens_AndWritesNothing) {
+  serve({"--model", "t-mini-plus", "--fault", "scanning"});
+  const outcome done = run({"doctor", "--listen", "-d", "500ms", port_});
+  EXPECT_EQ(done.code, 0) << done.out << done.err;
+  EXPECT_THAT(done.out, HasSubstr("the lidar was only listened to"));
+  EXPECT_THAT(done.out, Not(HasSubstr("answers_missing")));
+  EXPECT_THAT(served_->log(), Not(HasSubstr(" A5 ")));  // as each command is logged
+  serve({"--model", "g4"});
+  const outcome waits = run({"doctor", "--listen", "-d", "500ms", port_});
+  EXPECT_EQ(waits.code, 4) << waits.out;
+  EXPECT_THAT(waits.out, HasSubstr("a lidar that waits for a command is silent"));
+  EXPECT_THAT(served_->log(), Not(HasSubstr(" A5 ")));
+}
+
+// Its packets cannot be read as those of a T-mini Pro: no advice to insist on it.
+TEST_F(OwnersLidar, DoctorStatesTheSamplesThatItHasSeen) {
+  serve({"--model", "t-mini-plus-sh", "--device", "model_id=151"});
+  for (const std::vector<std::string>& options :
+       std::vector<std::vector<std::string>>{{}, {"--model", "t-mini-pro"}}) {
+    std::vector<std::string> words{"doctor", "-d", "500ms", port_};
+    words.insert(words.end(), options.begin(), options.end());
+    const outcome done = run(words);
+    EXPECT_THAT(done.out, HasSubstr("bytes_per_sample 4"));
+    EXPECT_THAT(done.out, Not(HasSubstr("bytes_per_sample 3")));
+    EXPECT_THAT(done.out, Not(HasSubstr("insist")));
+    EXPECT_THAT(done.out, Not(HasSubstr("wrong_baud_rate")));
+  }
 }
 
 TEST_F(OwnersLidar, TheUserMayInsistOnTheModel) {

@@ -94,7 +94,7 @@ TEST_P(DoctorOf, AHealthyOne_ThatIsNamed) {
     expect_stages(done, options);
     EXPECT_EQ(fact(done, diagnostic_stage::baud_rate, "model"), GetParam());
     EXPECT_EQ(fact(done, diagnostic_stage::baud_rate, "baud"), std::to_string(options.baud));
-    EXPECT_EQ(fact(done, diagnostic_stage::baud_rate, "bytes_per_sample"),
+    EXPECT_EQ(fact(done, diagnostic_stage::stream, "bytes_per_sample"),
               std::to_string(options.scanner.format.code.size()));
     EXPECT_EQ(done.motor_turns, options.driven_by == sim::drive::power) << done;
     EXPECT_LT(done.seconds, 10.0) << done;
@@ -199,7 +199,7 @@ const std::vector<belief> beliefs{
      {"scanning"}},
     {"X4_isNoG4", "x4", "g4", 0, "other_device", {"an X4 at 128000 baud", "not a G4"}},
     {"G4_isNoX4", "g4", "x4", 0, "other_device", {"a G4 at 230400 baud", "not an X4"}},
-    {"G2_isNoG4", "g2", "g4", 0, "answers_missing other_number other_device", {"have 3 bytes"}},
+    {"G2_isNoG4", "g2", "g4", 0, "other_number other_device", {"have 3 bytes"}},
     {"TG15_isNoTG30", "tg15", "tg30", 0, "other_device", {"100 is that of a TG15", "TG30 is 101"}},
     {"G4_isNoX2", "g4", "x2", 0, "other_device", {"a G4 at 230400 baud", "not an X2"}},
     {"X4_isNoX4Pro", "x4", "x4-pro", 0, "other_device", {"an X4", "not an X4 Pro"}},
@@ -273,7 +273,7 @@ TEST(MotorOfAnX4, WithoutItsSecondPlug) {
     }
   }
   const diagnosis_info& about = describe(diagnosis::no_motor_power);
-  EXPECT_NE(about.cause.find("second USB plug"), std::string_view::npos);
+  EXPECT_NE(about.cause.find("second plug"), std::string_view::npos);
   EXPECT_NE(about.advice.find("Connect the second plug"), std::string_view::npos);
 }
 

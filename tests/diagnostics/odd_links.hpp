@@ -29,9 +29,10 @@ wrapper wrap_in(Arguments... arguments) {
 /// Every attempt to connect fails.
 class failing_connector final : public connector {
  public:
-  explicit failing_connector(problem what) : what_(what) {}
+  explicit failing_connector(problem what, error_detail detail = error_detail::usual)
+      : what_(what), detail_(detail) {}
   [[nodiscard]] result<std::unique_ptr<transport>> connect() noexcept override {
-    return failure(task::opening, what_, "a port");
+    return failure(task::opening, what_, "a port", 0, detail_);
   }
   [[nodiscard]] std::int64_t now_ns() const noexcept override { return 0; }
   [[nodiscard]] bool pause(std::int64_t) noexcept override { return true; }
@@ -39,6 +40,7 @@ class failing_connector final : public connector {
 
  private:
   problem what_;
+  error_detail detail_;
 };
 
 /// Reading fails from a time on.

@@ -16,6 +16,9 @@
 
 #include "diagnostics/doctor_bench.hpp"
 #include "g4lidar/core/model.hpp"
+#include "g4lidar/diagnostics/diagnostic_message.hpp"
+#include "g4lidar/diagnostics/running_diagnosis.hpp"
+#include "g4lidar/lidar.hpp"
 #include "g4lidar/sim/device_options.hpp"
 #include "g4lidar/sim/ray_caster.hpp"
 #include "g4lidar/sim/setup.hpp"
@@ -92,6 +95,120 @@ TEST(Returns, ASectorIsNoFault) {
   how.directions.ignored_sectors = {};
   how.directions.field_of_view = sector(to[0] + 3, from[0] - 3);
   EXPECT_THAT(examine_in(scene, {}, how).at(diagnostic_stage::returns).remark, IsEmpty());
+}
+
+/// The sectors of the options in a remark: "--ignore 227:313".
+std::vector<std::pair<int, int>> options_in(const std::string& remark) {
+  const std::string option = "--ignore ";
+  std::vector<std::pair<int, int>> all;
+  for (std::size_t at = remark.find(option); at != std::string::npos;
+       at = remark.find(option, at + 1)) {
+    int from = -1;
+    int to = -1;
+    EXPECT_EQ(std::sscanf(remark.c_str() + at, "--ignore %d:%d", &from, &to), 2) << remark;
+    all.emplace_back(from, to);
+  }
+  return all;
+}
+
+struct blind_place {
+  std::string_view walls;
+  int count;  ///< Of sectors without a return.
+};
+
+// What is to be copied is the option of the same frame: with it nothing is said any more. Of sectors in each direction, that
+// cross 0, and of all but a narrow one.
+TEST(Returns, TheLineToCopy_LeavesTheSectorOut) {
+  for (const blind_place& place :
+       {blind_place{"wall 2 -20 2 20", 1}, blind_place{"wall -2 -20 -2 20", 1},
+        blind_place{"wall -20 2 20 2", 1}, blind_place{"wall -20 -2 20 -2", 1},
+        blind_place{"wall 2 -0.2 2 0.2", 1}, blind_place{"wall -2 -0.2 -2 0.2", 1},
+        blind_place{"wall 2 -2 2 2\nwall -2 -2 -2 2", 2}}) {
+    const sim::world scene = world_of(std::string(place.walls) + "\nlidar 0 0 0\n");
+    for (const char* const word : {"g4", "x4", "tg15"}) {
+      for (const frame in : {frame::vendor, frame::robot}) {
+        const model& which = *model_named(word);
+        sim::device_options options;
+        ASSERT_TRUE(sim::use_model(options, word));
+        diagnostic_options how{.model = &which};
+        how.measuring_time = std::chrono::seconds(2);
+        how.directions.in = in;
+        const examined done = examine_in(scene, options, how);
+        const std::string remark = done.at(diagnostic_stage::returns).remark;
+        EXPECT_THAT(remark, HasSubstr(in == frame::robot ? "counter-clockwise from ahead"
+                                                         : ", clockwise from the cable"));
+        const auto found = options_in(remark);
+        ASSERT_EQ(found.size(), static_cast<std::size_t>(place.count)) << place.walls << done;
+        std::vector<sector> ignored;
+        for (const auto& [from, to] : found) {
+          EXPECT_TRUE(from >= 0 && from < 360 && to >= 0 && to < 360) << remark;
+          ignored.emplace_back(from, to);
+        }
+        how.directions.ignored_sectors = ignored;
+        EXPECT_THAT(examine_in(scene, options, how).at(diagnostic_stage::returns).remark, IsEmpty())
+            << word << place.walls << remark;
+        // A half of it: only the rest is said.
+        if (place.count != 1) continue;
+        const int width = (found[0].second - found[0].first + 360) % 360;
+        if (width > 300) continue;
+        const std::array<sector, 1> half{sector(found[0].first, found[0].first + width / 2)};
+        how.directions.ignored_sectors = half;
+        const auto rest =
+            options_in(examine_in(scene, options, how).at(diagnostic_stage::returns).remark);
+        ASSERT_EQ(rest.size(), 1U);
+        EXPECT_NEAR((rest[0].first - found[0].first + 360) % 360, width / 2 + 1, 2);
+        EXPECT_NEAR((rest[0].second - found[0].second + 540) % 360, 180, 3);
+      }
+    }
+  }
+}
+
+// Straight ahead is 0 in the robot's frame: a part of the robot behind it is around 180.
+TEST(Returns, DegreesAreThoseOfTheFrame) {
+  const sim::world scene = world_of("wall 2 -20 2 20\nlidar 0 0 0\n");
+  sim::device_options options;
+  diagnostic_options how;
+  how.measuring_time = std::chrono::seconds(2);
+  std::array<std::pair<int, int>, 2> seen{};
+  for (const frame in : {frame::vendor, frame::robot}) {
+    how.directions.in = in;
+    const auto found =
+        options_in(examine_in(scene, options, how).at(diagnostic_stage::returns).remark);
+    ASSERT_EQ(found.size(), 1U);
+    seen.at(in == frame::robot ? 1 : 0) = found[0];
+  }
+  // A G4: robot = 180 - vendor, and the sense is the other one.
+  EXPECT_NEAR((180 - seen[0].second + 720) % 360, seen[1].first, 2);
+  EXPECT_NEAR((180 - seen[0].first + 720) % 360, seen[1].second, 2);
+}
+
+// In /diagnostics and in the page, which have the stages of the running diagnosis.
+TEST(Returns, RunningDiagnosis_HasTheSameText) {
+  const sim::world scene = world_of("wall 2 -20 2 20\nlidar 0 0 0\n");
+  sim::device simulated(scene, {});
+  sim::virtual_clock clock;
+  running_diagnosis judge;
+  auto lidar =
+      lidar::open(judge.observe(std::make_unique<sim::virtual_connector>(simulated, clock)));
+  ASSERT_TRUE(lidar && lidar->start());
+  while (clock.now_ns() < 30'000'000'000)
+    static_cast<void>(lidar->next_scan(std::chrono::milliseconds(200)));
+  const point_filter directions{.in = frame::robot};
+  examined running;
+  running.stages = judge.stages(directions);
+  const std::string text = running.at(diagnostic_stage::returns).remark;
+  diagnostic_options how;
+  how.directions = directions;
+  const std::string once = examine_in(scene, {}, how).at(diagnostic_stage::returns).remark;
+  ASSERT_EQ(options_in(text).size(), 1U) << running;
+  // The edges are measured: a degree more or less.
+  const auto shape = [](std::string words) {
+    std::erase_if(words, [](char each) { return each >= '0' && each <= '9'; });
+    return words;
+  };
+  EXPECT_EQ(shape(text), shape(once));
+  EXPECT_NEAR(options_in(text)[0].first, options_in(once)[0].first, 2);
+  EXPECT_THAT(status_of(running.at(diagnostic_stage::returns), "").message, HasSubstr(text));
 }
 
 std::vector<sim::world> worlds() {

@@ -34,7 +34,7 @@ TEST(LimitedRow, HasTheValuesOfTheModel) {
   EXPECT_EQ(row("frequency", "t-mini-pro").range, (std::array{6.0, 12.0, 0.1}));
   EXPECT_EQ(row("frequency", "x4").range, (std::array{0.0, 0.0, 0.0}));
   EXPECT_EQ(row("frequency", "x4").constraints,
-            "this model does not have it; its speed: a voltage or PWM at its pin M_SCTR; USB "
+            "this model does not have it; its speed: a voltage or PWM at its pin M_SCTR; most "
             "boards leave it at "
             "their default");
   EXPECT_EQ(row("range_max", "x4").range, (std::array{0.0, 100.0, 0.0}));

@@ -221,7 +221,7 @@ TEST(PageTexts, SayHowTheSpeedIsSetWithoutCommands) {
     return hello["device"]["speed_by"].get<std::string>();
   };
   EXPECT_EQ(speed_of("x4"),
-            "a voltage or PWM at its pin M_SCTR; USB boards leave it at their default");
+            "a voltage or PWM at its pin M_SCTR; most boards leave it at their default");
   EXPECT_EQ(speed_of("g4"), "");
 }
 

@@ -68,7 +68,7 @@ json json_of(const stage_report& stage, const std::string& lidar) {
   if (!lidar.empty()) made["lidar"] = lidar;
   json& diagnoses = made["diagnoses"] = json::array();
   for (const diagnosis what : stage.diagnoses) {
-    const diagnosis_info info = describe(what);
+    const diagnosis_info info = stage.explain(what);
     diagnoses.push_back({{"name", info.name},
                          {"cause", in_tool_words(info.cause)},
                          {"advice", in_page_words(info.advice)}});

@@ -109,7 +109,7 @@ struct diagnosis_info {
       alternatives;  ///< Diagnoses that look the same to a host, the most likely first.
 };
 
-/// *Any thread.* (docs/design/doctor.md)
+/// In general; stage_report::explain() knows the case. *Any thread.* (docs/design/doctor.md)
 [[nodiscard]] G4LIDAR_API diagnosis_info describe(diagnosis what) noexcept;
 /// "baud_rate", "answers". The names do not change.
 [[nodiscard]] G4LIDAR_API std::string_view name_of(diagnostic_stage where) noexcept;
@@ -147,13 +147,26 @@ template <class Value>
   }
 }
 
+/// On what way the bytes of a source come to this program.
+enum class byte_path : std::uint8_t {
+  line,     ///< A serial line at this computer; also of a simulated lidar.
+  network,  ///< A network bridge: what is behind it is not known.
+  file,     ///< A recording, or a file of raw bytes.
+};
+
 /// How one stage ended.
 struct stage_report {
   diagnostic_stage stage = diagnostic_stage::port;
   stage_verdict outcome = stage_verdict::ok;
   std::vector<diagnosis> diagnoses{};  ///< The most likely first.
   std::vector<evidence> measurements{};
-  std::string remark{};  ///< One more sentence; empty: none.
+  std::string remark{};                       ///< One more sentence; empty: none.
+  byte_path by = byte_path::line;             ///< On what way the bytes came.
+  error_detail detail = error_detail::usual;  ///< Which case of its diagnosis it is.
+
+  /// describe() for one of its diagnoses, with the cause and the advice for this way of the bytes and for this case: of
+  /// what came through a network no cable is at fault. Valid forever.
+  [[nodiscard]] G4LIDAR_API diagnosis_info explain(diagnosis what) const noexcept;
 
   /// Adds a diagnosis, once, and raises the verdict to its severity.
   G4LIDAR_API void find(diagnosis what);

@@ -36,6 +36,9 @@ struct diagnostic_options {
   /// model_of_source() finds it. Valid forever.
   const g4lidar::model* model = nullptr;
   bool insist_on_model = false;  ///< As that of lidar_options: whatever number the lidar reports.
+  /// As that of lidar_options: not a byte is sent. What needs answers is skipped, and a lidar that waits for a command
+  /// is silent. Where the source has no name, there must be one port with the bridge of a G4.
+  bool listen_only = false;
   bool probe_all_ports = false;  ///< As that of lidar_options, where the source has no name.
   /// How long to measure the running scan; a file is always read completely.
   std::chrono::nanoseconds measuring_time = std::chrono::seconds(5);

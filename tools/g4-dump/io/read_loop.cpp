@@ -111,13 +111,11 @@ void report_events(g4lidar::lidar& lidar) {
       report_missing_zero(which);
       continue;
     }
-    if (event->what == lidar_event::kind::other_number) {
-      report_contradictions(lidar.recognition());
-      continue;
-    }
+    if (event->what == lidar_event::kind::other_number) continue;  // it is reported below
     logger::info(fmt::format("{}: {}{}{}\n", lidar.name(), name_of(event->what),
                              is_loss ? ", " : "", is_loss ? name_of(event->reason) : ""));
   }
+  report_contradictions(lidar);
 }
 
 void read_source(opened_source& source, const common_options& options, const read_sink& sink,

@@ -51,7 +51,7 @@ std::string flag_of(stage_verdict how, bool colored) {
 std::string text_of_report(const stage_report& report, bool colored) {
   std::vector<std::string> lines;
   for (const diagnosis what : report.diagnoses) {
-    const diagnosis_info& info = describe(what);
+    const diagnosis_info info = report.explain(what);
     lines.push_back(fmt::format("{}: {}", info.name, info.cause));
     if (!info.alternatives.empty()) lines.push_back("or: " + list_of(info.alternatives));
     lines.push_back("try: " + in_tool_words(info.advice));
@@ -80,7 +80,7 @@ nlohmann::ordered_json json_of_report(const stage_report& report) {
                     {"diagnoses", ordered_json::array()},
                     {"evidence", ordered_json::object()}};
   for (const diagnosis what : report.diagnoses) {
-    const diagnosis_info& info = describe(what);
+    const diagnosis_info info = report.explain(what);
     ordered_json others = ordered_json::array();
     for (const diagnosis other : info.alternatives) others.push_back(describe(other).name);
     line["diagnoses"].push_back({{"name", info.name},
@@ -154,6 +154,7 @@ int examine(const doctor_options& options) {
   diagnostic_options how;
   how.baud = options.expected.baud;
   how.insist_on_model = options.expected.insists;
+  how.listen_only = options.expected.listens;
   how.probe_all_ports = options.expected.all_ports;
   const source_kind kind = kind_of_source(options.source);
   std::optional<recognised_model> seen;
@@ -221,7 +222,8 @@ verb make_doctor_verb() {
       .arguments = {source_argument(*options)},
       .options = joined(
           output_rows(*options), json, time, baud_row(*options), model_row(*options),
-          all_ports_row(*options), direction_rows(*options),
+          in_group("Device", {listen_row(*options)}), all_ports_row(*options),
+          direction_rows(*options),
           in_group("Filters",
                    {frame_row("--frame",
                               "Of --fov and --ignore; vendor: clockwise from the cable (vendor)",

@@ -30,13 +30,13 @@ std::string number_or_dash(double value, std::string_view unit, int decimals) {
 /// The worst stage, and the names of all diagnoses.
 struct verdict {
   stage_verdict outcome = stage_verdict::ok;
-  std::vector<diagnosis> found{};
+  std::vector<diagnosis_info> found{};
 };
 verdict verdict_of(std::span<const stage_report> stages) {
   verdict all;
   for (const stage_report& stage : stages) {
     if (!stage.diagnoses.empty()) all.outcome = std::max(all.outcome, stage.outcome);
-    all.found.insert(all.found.end(), stage.diagnoses.begin(), stage.diagnoses.end());
+    for (const diagnosis what : stage.diagnoses) all.found.push_back(stage.explain(what));
   }
   return all;
 }
@@ -50,8 +50,8 @@ std::string words_of(const verdict& all, std::span<const stage_report> stages) {
   if (stages.empty()) return "-";
   if (all.found.empty()) return "ok";
   std::string names;
-  for (const diagnosis what : all.found) {
-    names.append(names.empty() ? "" : " ").append(describe(what).name);
+  for (const diagnosis_info& each : all.found) {
+    names.append(names.empty() ? "" : " ").append(each.name);
   }
   return names;
 }
@@ -123,9 +123,9 @@ void draw_panel(canvas& on, const cell_area& in, const view_facts& facts,
   words.line("doctor", ink::faint);
   words.paragraph(words_of(all, facts.stages), ink_of(all.outcome));
   if (!facts.why.empty()) words.paragraph(printable(facts.why), ink::warn);
-  for (const diagnosis what : all.found) {
-    words.paragraph(describe(what).cause);
-    words.paragraph(in_tool_words(describe(what).advice), ink::faint);
+  for (const diagnosis_info& each : all.found) {
+    words.paragraph(each.cause);
+    words.paragraph(in_tool_words(each.advice), ink::faint);
   }
 }
 

@@ -285,6 +285,10 @@ option_row model_row(common_options& options) {
                    });
 }
 
+option_row listen_row(common_options& options) {
+  return flag_row("--listen", "Only listen: not a byte is sent", options.expected.listens);
+}
+
 option_row all_ports_row(common_options& options) {
   option_row row =
       flag_row("--all-ports", "Without a name: look at all ports, not only at a CP2102",
@@ -310,9 +314,7 @@ option_rows device_rows(common_options& options) {
   return joined(
       in_group("Device", {choice_row("--on-loss", help.c_str(), options.on_loss.given, rules)}),
       baud_row(options), in_group("Device", {model_row(options), zero_row(options)}),
-      in_group("Device",
-               {flag_row("--listen", "Only listen: not a byte is sent", options.expected.listens)}),
-      all_ports_row(options));
+      in_group("Device", {listen_row(options)}), all_ports_row(options));
 }
 
 option_row loop_row(bool& into) { return flag_row("--loop", "Start again at the end", into); }

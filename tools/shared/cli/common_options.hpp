@@ -142,6 +142,8 @@ void note_order(scan_order chosen);
 [[nodiscard]] option_rows baud_row(common_options& options);
 /// --model.
 [[nodiscard]] option_row model_row(common_options& options);
+/// --listen.
+[[nodiscard]] option_row listen_row(common_options& options);
 /// --all-ports.
 [[nodiscard]] option_row all_ports_row(common_options& options);
 /// --zero-angle.

@@ -203,6 +203,17 @@ void report_contradictions(const recognition& found) {
   last = now;
 }
 
+void report_contradictions(const g4lidar::lidar& from) {
+  const recognition found = from.recognition();
+  const auto has_it = [&](const g4lidar::model& row) {
+    return std::ranges::find(row.ids, found.number) != row.ids.end();
+  };
+  const bool may_change = found.by == known_by::samples && found.number != 0 &&
+                          std::ranges::none_of(models, has_it) && !found.was_stopped &&
+                          from.counts().stream.packets == 0;
+  if (!may_change) report_contradictions(found);
+}
+
 void report_model(const recognised_model& found) { report_model(*found.which, found.is_usual()); }
 
 // What all sources get is left out: the speed 1 of programs that show a recording.
@@ -280,7 +291,11 @@ lidar_options options_for(const common_options& options, lidar_options how) {
   how.wrap = [inner = std::move(how.wrap), is_raw](std::unique_ptr<connector> from) {
     const connector_traits behind = from->traits();
     const recognition& found = behind.recognised;
-    report_candidates(found.candidates);
+    // Of a contradiction they are part, and later.
+    const bool is_other =
+        found.number != 0 && found.model != nullptr &&
+        std::ranges::find(found.model->ids, found.number) == found.model->ids.end();
+    if (!is_other) report_candidates(found.candidates);
     if (is_raw && found.model != nullptr) report_model(*found.model, found.by == known_by::samples);
     return inner ? inner(std::move(from)) : result<std::unique_ptr<connector>>(std::move(from));
   };
@@ -317,7 +332,7 @@ opened_source::opened_source(const common_options& options, lidar_options how) {
     throw failure_of(options, opened.error());
   }
   lidar_.emplace(std::move(*opened));
-  report_contradictions(lidar_->recognition());
+  report_contradictions(*lidar_);
   logger::verbose(fmt::format("opened {}\n", lidar_->name()));
 }
 

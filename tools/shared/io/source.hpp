@@ -49,6 +49,8 @@ void report_model(const recognised_model& found);
 void report_missing_zero(const g4lidar::model& which);
 /// Logs what contradicts the model, if anything does, and once.
 void report_contradictions(const g4lidar::recognition& found);
+/// The same, once the first packets have decided as which model a lidar is read whose number no model has.
+void report_contradictions(const g4lidar::lidar& from);
 /// Logs between which models the bytes of a device do not decide, if there are several.
 void report_candidates(std::span<const g4lidar::model* const> candidates);
 /// The error of a lidar that was opened so, in the words of the tool.
