@@ -225,7 +225,7 @@ std::string node_parameters::refuse(const changes& wanted) {
     return std::ranges::find(touched, each.first) == touched.end();
   });
   g4lidar::scan_shaper shaper;
-  g4lidar::lidar_parameters trial({}, {}, {}, {}, shaper);
+  g4lidar::lidar_parameters trial({}, {}, {}, shaper);
   if (session_ && !values.empty()) static_cast<void>(trial.change(nullptr, filters({})));
   if (std::string wrong = trial.change(nullptr, values); !wrong.empty() || !session_) return wrong;
   if (!settings.empty()) {
