@@ -136,6 +136,7 @@ session_options node_parameters::for_session() const {
   }
   lidar.insist_on_model |= node_.get_parameter("insist_on_model").as_bool();
   lidar.listen_only = node_.get_parameter("listen_only").as_bool();
+  lidar.leave_dtr = node_.get_parameter("leave_dtr").as_bool();
   if (const auto baud = node_.get_parameter("baud").as_int(); baud > 0)
     lidar.baud = static_cast<std::uint32_t>(baud);
   if (const auto wrong = g4lidar::problem_with_source(lidar))

@@ -311,7 +311,9 @@ option_rows device_rows(common_options& options) {
       in_group("Device", {choice_row("--on-loss", help.c_str(), options.on_loss.given, rules)}),
       baud_row(options), in_group("Device", {model_row(options), zero_row(options)}),
       in_group("Device",
-               {flag_row("--listen", "Only listen: not a byte is sent", options.expected.listens)}),
+               {flag_row("--listen", "Only listen: not a byte is sent", options.expected.listens),
+                flag_row("--leave-dtr", "Do not set the line DTR of the port",
+                         options.expected.leaves_dtr)}),
       all_ports_row(options));
 }
 

@@ -48,6 +48,7 @@ void report_model(const recognised_model& found);
 /// Logs that the angles lack the offset of zero of this model.
 void report_missing_zero(const g4lidar::model& which);
 /// Logs what contradicts the model, if anything does, and once.
+void report_contradictions(const std::string& now);
 void report_contradictions(const g4lidar::recognition& found);
 /// Logs between which models the bytes of a device do not decide, if there are several.
 void report_candidates(std::span<const g4lidar::model* const> candidates);
