@@ -2,6 +2,7 @@
 #include "driver.hpp"
 
 #include <algorithm>
+#include <new>
 #include <utility>
 
 #include "listening_driver.hpp"
@@ -23,6 +24,17 @@ std::unique_ptr<scan_source> make_source(scan_source::parts& parts, const lidar_
 
 }  // namespace
 
+void scan_source::record_contradictions() noexcept {
+  recording_hook* const hook = recording_hook_of(connection_.from());
+  if (hook == nullptr) return;
+  try {
+    const recognition now = recognised_.get();
+    if (!contradictions_of(now).empty()) hook->recognised(now);
+  } catch (const std::bad_alloc&) {
+    return;  // the recording is without them
+  }
+}
+
 lidar::driver::driver(std::unique_ptr<connector> from, const lidar_options& options,
                       const g4lidar::recognition& known)
     : parts_{connection(std::move(from), options.device),
@@ -42,7 +54,9 @@ result<void> lidar::driver::open() {
   if (parts_.link.from().traits().recognised.was_stopped) {
     parts_.events.put({lidar_event::kind::found_scanning, problem::timeout, parts_.link.now_ns()});
   }
-  return source_->open();
+  auto opened = source_->open();
+  if (opened) source_->record_contradictions();
+  return opened;
 }
 
 result<void> lidar::driver::close() {

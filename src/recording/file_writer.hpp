@@ -72,6 +72,7 @@ class recording_writer::file_writer {
   void odometry(const stamped_odometry& what) noexcept;
   void points(std::span<const point> delivered) noexcept { points_.add(delivered); }
   void device(const recorded_device& known) noexcept;
+  void recognised(const recognition& what) noexcept;
   void metadata(std::string_view name,
                 std::span<const std::pair<std::string, std::string>> words) noexcept;
   /// What sends the bytes: the file begins again if it is empty and for another model.

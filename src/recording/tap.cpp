@@ -114,6 +114,10 @@ class recorded_connector final : public forwarding_connector,
     if (inner_hook_ != nullptr) inner_hook_->event(what);
     into_->event(what);
   }
+  void recognised(const recognition& what) noexcept override {
+    if (inner_hook_ != nullptr) inner_hook_->recognised(what);
+    into_->recognised(what);
+  }
 
   [[nodiscard]] std::optional<recorded_event> next_event() noexcept override {
     const auto what = played_->next_event();
@@ -184,6 +188,11 @@ class recording_switch::observer {
   void device(const recorded_device& known) noexcept {
     if (to_ != nullptr) to_->device(known);
   }
+  void recognised(const recognition& what) noexcept {
+    recognised_ = what;
+    recognised_->candidates = {};  // which are valid as long as the lidar
+    if (to_ != nullptr) to_->device({.recognised = recognised_});
+  }
   void set_wall_clock(std::int64_t ahead_ns) noexcept {
     wall_ahead_ns_ = ahead_ns;
     if (to_ != nullptr) to_->set_wall_clock(ahead_ns);
@@ -194,6 +203,7 @@ class recording_switch::observer {
     to_ = &to;
     if (wall_ahead_ns_) to.set_wall_clock(*wall_ahead_ns_);
     to.event(state_.as_event(latest_ns_));
+    if (recognised_) to.device({.recognised = recognised_});
     return true;
   }
   void off() noexcept { to_ = nullptr; }
@@ -206,6 +216,7 @@ class recording_switch::observer {
   mcap::transport_state state_;
   std::int64_t latest_ns_ = 0;
   std::optional<std::int64_t> wall_ahead_ns_;
+  std::optional<recognition> recognised_;
   recording_writer* to_ = nullptr;  // null: off
 };
 
