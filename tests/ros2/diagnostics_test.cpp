@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 
 #include <cstdint>
+#include <fstream>
 #include <map>
 #include <set>
 #include <string>
@@ -125,6 +126,31 @@ TEST(Diagnostics, StateIsAWarningWhereSomethingContradictsTheModel) {
   EXPECT_EQ(values["number"], "153");
   EXPECT_EQ(values["g4lidar: state level"], "1");
   EXPECT_THAT(values["g4lidar: state warning"], HasSubstr("153, which no known model has"));
+  tool.send(SIGINT);
+}
+
+class DiagnosticsOfWorlds : public cli::scratch {};
+
+TEST_F(DiagnosticsOfWorlds, StageOfTheReturnsNamesTheDirectionsWithoutOne) {
+  const std::string world = path("world.txt");
+  std::ofstream(world) << "wall -900 900 900 900\nlidar 0 0 0\n";  // farther than any lidar sees
+  {
+    const test_domain domain;
+    diagnosis values(domain);
+    cli::program tool({"sim:?world=" + world});
+    EXPECT_TRUE(comes_true([&] { return values["diagnosis"] == "no_returns"; }));
+    EXPECT_EQ(values["g4lidar: returns level"], "1");
+    tool.send(SIGINT);
+  }
+  // 53 degrees of a wall, where the cable leaves the lidar: behind it.
+  std::ofstream(world) << "wall 2 -1 2 1\nlidar 0 0 0\n";
+  const test_domain domain;
+  diagnosis values(domain);
+  cli::program tool({"sim:?world=" + world});
+  EXPECT_TRUE(comes_true([&] { return !values["nothing_from_deg"].empty(); }));
+  EXPECT_NEAR(std::stod(values["nothing_from_deg"]), -153.0, 4.0);
+  EXPECT_NEAR(std::stod(values["nothing_to_deg"]), 153.0, 4.0);
+  EXPECT_EQ(values["g4lidar: returns level"], "0");
   tool.send(SIGINT);
 }
 
