@@ -145,7 +145,7 @@ TEST_F(OwnersLidar, WhatContradictsTheModelStandsInItsRecording) {
       {{"--model", "t-mini-plus", "--device", "model_id=153"},
        {},
        "153, which no known model has",
-       "T-mini Plus"},
+       "T-mini Pro"},  // the usual one with such samples
       {{"--model", "g4"}, {"--model", "g5!"}, "reports the number 5, that of a G4", "G5"},
       {{"--model", "s2-intensity", "--device", "baud=153600"},
        {"--model", "s2-intensity"},
@@ -166,15 +166,15 @@ TEST_F(OwnersLidar, WhatContradictsTheModelStandsInItsRecording) {
       EXPECT_THAT(info.err, HasSubstr(each.text)) << file;
       EXPECT_THAT(info.out, HasSubstr("model       " + each.model)) << file;
       EXPECT_THAT(run({"info", "--json", file}).out, HasSubstr(each.text)) << file;
-      for (const char* const verb : {"scan", "decode", "replay"}) {
-        const outcome played = run({verb, file});
-        EXPECT_EQ(played.code, 0) << played.err;
-        EXPECT_THAT(played.err, HasSubstr(each.text)) << verb << " " << file;
-      }
-      const outcome examined = run({"doctor", "--json", file});
-      EXPECT_THAT(examined.out, Not(HasSubstr("other_device"))) << file;
-      EXPECT_THAT(examined.out, HasSubstr(each.text)) << file;
     }
+    for (const char* const verb : {"scan", "decode", "replay"}) {
+      const outcome played = run({verb, walk});
+      EXPECT_EQ(played.code, 0) << played.err;
+      EXPECT_THAT(played.err, HasSubstr(each.text)) << verb;
+    }
+    const outcome examined = run({"doctor", "--json", walk});
+    EXPECT_THAT(examined.out, Not(HasSubstr("other_device")));
+    EXPECT_THAT(examined.out, HasSubstr(each.text));
   }
   ASSERT_EQ(run({"record", "-n", "3", "sim:", "--force", "-o", walk}).code, 0);
   EXPECT_THAT(run({"info", "--json", walk}).out, HasSubstr(R"("contradictions":"")"));

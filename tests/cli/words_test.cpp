@@ -73,7 +73,8 @@ TEST_F(UserWords, ANameOfAnotherKindHasTheRightOne) {
        {std::pair("udp:0.0.0.0:8889", "tcp:0.0.0.0:8889"),
         std::pair("socket://h:4000", "tcp:h:4000"),
         std::pair("127.0.0.1:4000", "tcp:127.0.0.1:4000"), std::pair("ttyUSB0", "/dev/ttyUSB0"),
-        std::pair("COM3", "/dev/ttyUSB0")}) {
+        std::pair("COM3", "/dev/ttyUSB0"), std::pair("/dev/ttyusb0", "/dev/ttyUSB0"),
+        std::pair("USB0", "/dev/ttyUSB0")}) {
     const std::string wanted = std::string("did you mean ") + meant + "?";
     for (const char* const verb : {"scan", "info", "record", "set", "view", "acceptance"}) {
       std::vector<std::string> words{verb, given};
