@@ -180,21 +180,13 @@ void recording_writer::file_writer::odometry(const stamped_odometry& what) noexc
 
 void recording_writer::file_writer::device(const recorded_device& known) noexcept {
   static_cast<void>(guarded([&]() -> result<void> {
-    const auto before = device_;
+    const recorded_device before = device_.value_or(recorded_device{});
     device_ = known;
-    if (before && !known.recognised) device_->recognised = before->recognised;
-    if (before && !known.information.is_known()) device_->information = before->information;
-    const mcap::word_map words = mcap::words_of(*device_);
-    if (!before || words != mcap::words_of(*before)) metadata(mcap::device_metadata, words);
+    if (!known.recognised) device_->recognised = before.recognised;
+    if (!known.information.is_known()) device_->information = before.information;
+    metadata(mcap::device_metadata, mcap::words_of(*device_));
     return {};
   }));
-}
-
-void recording_writer::file_writer::recognised(const recognition& what) noexcept {
-  recorded_device known = device_.value_or(recorded_device{});
-  known.recognised = what;
-  known.recognised->candidates = {};  // which are valid as long as the lidar
-  device(known);
 }
 
 /// Behind the items that were recorded before it.

@@ -111,11 +111,10 @@ void take_firmware(device_information& who, std::string_view text) noexcept {
 
 /// From what the model of the recorded lidar was known.
 known_by known_by_from(std::string_view word) {
-  for (const known_by each :
-       {known_by::user, known_by::recording, known_by::number, known_by::samples}) {
-    if (word == name_of(each)) return each;
-  }
-  return known_by::nothing;
+  constexpr std::array all{known_by::user, known_by::recording, known_by::number,
+                           known_by::samples};
+  const auto* const at = std::ranges::find(all, word, [](known_by each) { return name_of(each); });
+  return at == all.end() ? known_by::nothing : *at;
 }
 
 }  // namespace

@@ -13,8 +13,9 @@
 namespace g4lidar::test {
 namespace {
 
-TEST(PortWords, TheNameThatIsMeant) {
-  const std::vector<std::pair<std::string, std::string>> all{
+/// What is written, and the name that is meant.
+const std::vector<std::pair<std::string, std::string>>& meant_names() {
+  static const std::vector<std::pair<std::string, std::string>> all{
       {"ttyUSB0", "/dev/ttyUSB0"},
       {"/ttyACM1", "/dev/ttyACM1"},
       {"dev/ttyUSB0", "/dev/ttyUSB0"},
@@ -88,7 +89,11 @@ TEST(PortWords, TheNameThatIsMeant) {
       {"robot.local", "tcp:robot.local:PORT"},
       {"localhost:4000", "tcp:localhost:4000"},
   };
-  for (const auto& [given, meant] : all) {
+  return all;
+}
+
+TEST(PortWords, TheNameThatIsMeant) {
+  for (const auto& [given, meant] : meant_names()) {
     EXPECT_EQ(meant_by(given), meant) << given;
     const auto port = select_port(given);
     ASSERT_FALSE(port) << given;
