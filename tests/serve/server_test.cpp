@@ -70,7 +70,8 @@ TEST_F(Server, StatusHasTheDirectionsWithoutAReturn) {
     json found;
     EXPECT_TRUE(g4lidar::test::comes_true([&] {
       const std::string text = raw_client(port_).get("/status.json");
-      for (const json& each : json::parse(text.substr(text.find("\r\n\r\n") + 4))["stages"]) {
+      const json status = json::parse(text.substr(text.find("\r\n\r\n") + 4));
+      for (const json& each : status["stages"]) {
         if (each["stage"] == "returns" && each["verdict"] != "skipped") found = each;
       }
       return !found.is_null();
