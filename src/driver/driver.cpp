@@ -2,7 +2,6 @@
 #include "driver.hpp"
 
 #include <algorithm>
-#include <new>
 #include <utility>
 
 #include "listening_driver.hpp"
@@ -24,17 +23,6 @@ std::unique_ptr<scan_source> make_source(scan_source::parts& parts, const lidar_
 
 }  // namespace
 
-void scan_source::record_contradictions() noexcept {
-  recording_hook* const hook = recording_hook_of(connection_.from());
-  if (hook == nullptr) return;
-  try {
-    const recognition now = recognised_.get();
-    if (!contradictions_of(now).empty()) hook->recognised(now);
-  } catch (const std::bad_alloc&) {
-    return;  // the recording is without them
-  }
-}
-
 lidar::driver::driver(std::unique_ptr<connector> from, const lidar_options& options,
                       const g4lidar::recognition& known)
     : parts_{connection(std::move(from), options.device),
@@ -55,7 +43,7 @@ result<void> lidar::driver::open() {
     parts_.events.put({lidar_event::kind::found_scanning, problem::timeout, parts_.link.now_ns()});
   }
   auto opened = source_->open();
-  if (opened) source_->record_contradictions();
+  if (opened) parts_.recognised.record(parts_.link.from());
   return opened;
 }
 

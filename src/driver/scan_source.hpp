@@ -102,8 +102,6 @@ class scan_source {
   [[nodiscard]] virtual std::int64_t step_until_ns(std::int64_t deadline_ns) const noexcept {
     return deadline_ns;
   }
-  /// For a recording: what contradicts the model, if something does.
-  void record_contradictions() noexcept;
   [[nodiscard]] const device_information& information() const noexcept { return information_; }
   /// Of the turning part, if it has reported another one.
   [[nodiscard]] const std::optional<device_information>& module_information() const noexcept {
@@ -122,7 +120,7 @@ class scan_source {
   [[nodiscard]] std::int64_t now_ns() const noexcept { return connection_.now_ns(); }
   void report(lidar_event::kind what, problem reason = problem::timeout) noexcept {
     events_.put({what, reason, now_ns()});
-    if (what == lidar_event::kind::other_number) record_contradictions();
+    if (what == lidar_event::kind::other_number) recognised_.record(connection_.from());
   }
 
   /// The motor is started: the first scan comes when it has spun up.

@@ -72,16 +72,6 @@ class recording_writer::file_writer {
   void odometry(const stamped_odometry& what) noexcept;
   void points(std::span<const point> delivered) noexcept { points_.add(delivered); }
   void device(const recorded_device& known) noexcept;
-  void recognised(const recognition& what) noexcept {
-    recorded_device known = device_.value_or(recorded_device{});
-    const auto& old = known.recognised;
-    const bool is_known = old && old->model == what.model && old->number == what.number &&
-                          old->baud == what.baud && old->is_silent == what.is_silent;
-    if (is_known) return;  // after a reconnect
-    known.recognised = what;
-    known.recognised->candidates = {};  // which are valid as long as the lidar
-    device(known);
-  }
   void metadata(std::string_view name,
                 std::span<const std::pair<std::string, std::string>> words) noexcept;
   /// What sends the bytes: the file begins again if it is empty and for another model.

@@ -116,7 +116,13 @@ class recorded_connector final : public forwarding_connector,
   }
   void recognised(const recognition& what) noexcept override {
     if (inner_hook_ != nullptr) inner_hook_->recognised(what);
-    into_->recognised(what);
+    const bool is_same = recognised_ && recognised_->model == what.model &&
+                         recognised_->number == what.number && recognised_->baud == what.baud &&
+                         recognised_->is_silent == what.is_silent;
+    if (is_same) return;  // after a reconnect
+    recognised_ = what;
+    recognised_->candidates = {};  // which are valid as long as the lidar
+    into_->device({.recognised = recognised_});
   }
 
   [[nodiscard]] std::optional<recorded_event> next_event() noexcept override {
@@ -145,6 +151,7 @@ class recorded_connector final : public forwarding_connector,
   Writer* into_;
   recording_hook* inner_hook_;     // null: a device that nobody else records
   recorded_event_source* played_;  // null: a device, or a file without events
+  std::optional<recognition> recognised_;
 };
 
 }  // namespace
@@ -186,12 +193,8 @@ class recording_switch::observer {
     if (to_ != nullptr) to_->event(what);
   }
   void device(const recorded_device& known) noexcept {
+    if (known.recognised) recognised_ = known.recognised;
     if (to_ != nullptr) to_->device(known);
-  }
-  void recognised(const recognition& what) noexcept {
-    recognised_ = what;
-    recognised_->candidates = {};  // which are valid as long as the lidar
-    if (to_ != nullptr) to_->device({.recognised = recognised_});
   }
   void set_wall_clock(std::int64_t ahead_ns) noexcept {
     wall_ahead_ns_ = ahead_ns;

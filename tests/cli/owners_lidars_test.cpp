@@ -104,7 +104,7 @@ TEST_F(OwnersLidar, ThatIsOnlyListenedTo_GetsNoCommandOfAnyVerb) {
   EXPECT_THAT(info.out, HasSubstr("frequency   unknown (only listened to)"));
 }
 
-TEST_F(OwnersLidar, ThatAnswersNothing_IsNotSaidToHaveStopped) {
+TEST_F(OwnersLidar, ThatAnswersNothing_HasNotStopped) {
   serve({"--model", "t-mini-plus", "--fault", "scanning", "--fault", "deaf"});
   const outcome stop = run({"stop", port_});
   EXPECT_THAT(stop.err, HasSubstr("cannot be stopped"));
