@@ -4,10 +4,7 @@
 # instructions by callgrind, heap calls, system calls. Fails if a count is above its promise.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
-source scripts/packages.sh
-source scripts/build.sh
-need_packages "${packages_bench[@]}"
-configure_preset bench
+source bench/begin.sh
 build build/bench device_bench
 configure_preset release
 build build/release g4-dump

@@ -12,12 +12,9 @@
 # (steal in /proc/stat).
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
-source scripts/packages.sh
-source scripts/build.sh
+source bench/begin.sh
 seconds=${1:-10}
 repetitions=${2:-3}
-need_packages "${packages_bench[@]}"
-configure_preset bench
 build build/bench device_bench
 bench=build/bench/bench/device_bench
 scratch=$(mktemp -d -t g4lidar-device-bench.XXXXXX)

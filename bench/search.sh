@@ -6,9 +6,6 @@
 #   bench/search.sh [OPENINGS]: of each model, 20 by default.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
-source scripts/packages.sh
-source scripts/build.sh
-need_packages "${packages_bench[@]}"
-configure_preset bench
+source bench/begin.sh
 build build/bench search_bench
 build/bench/bench/search_bench "$@"

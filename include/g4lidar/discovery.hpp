@@ -114,6 +114,7 @@ struct search_options {
       nullptr;  ///< Not searched for if it is set: its rates are tried first. A one-way one gets no byte.
   std::uint32_t baud = 0;    ///< Not searched for if it is not 0.
   bool listen_only = false;  ///< Not a byte is sent.
+  bool leave_dtr = false;    ///< The line DTR is not set: lidar_options::leave_dtr.
   /// Whether the user has named the port: if nothing arrives, DTR gets a pulse, because some models need
   /// it to turn. Takes 2 s more.
   bool may_pulse_dtr = false;

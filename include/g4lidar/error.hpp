@@ -90,6 +90,7 @@ enum class error_detail : std::uint8_t {
   other_maker,  ///< other_device: packets of another maker, or of another kind of device.
   not_passed,  ///< permission: not by the mode of the port: a container or a sandbox may not use the device.
   other_bridges,  ///< no_port: there are ports that were not looked at, because they have another USB bridge.
+  only_listens,  ///< not_supported: the lidar is only listened to (lidar_options::listen_only), or answers nothing.
 };
 
 /// One error. Trivially copyable, never allocates.

@@ -69,6 +69,10 @@ struct lidar_options {
   /// waits for commands stays silent. Requests and settings are refused with not_supported. A lidar that sends whole
   /// packets and does not answer is read so anyhow.
   bool listen_only = false;
+  /// The line DTR of the port is not set: a motor that it drives keeps its state, and nothing restarts a silent lidar.
+  /// Linux itself raises the line for the first program that opens a port. Without this, DTR is raised for a lidar whose
+  /// motor it drives, gets a pulse if the lidar is silent, and is lowered at the end.
+  bool leave_dtr = false;
   /// Bits per second, of a serial port and of the one behind `tcp:`; 0: the usual rate of the model.
   std::uint32_t baud = 0;
 

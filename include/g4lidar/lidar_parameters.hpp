@@ -66,10 +66,10 @@ struct parameter {
 /// The values of one lidar. Functions without another word: only in the thread that reads it.
 class G4LIDAR_API lidar_parameters {
  public:
-  /// `how`: what no parameter changes; its filter and its marks are those of `start`, whose texts `words` has by the
-  /// names of the parameters, and its masks those of `mask`. `shaper` shapes by them, and outlives this.
+  /// `how`: what no parameter changes; its filter and its marks are those of `start`, and its masks those of `mask`.
+  /// `shaper` shapes by them, and outlives this.
   lidar_parameters(const shaping_options& how, filter_settings start, g4lidar::mask mask,
-                   const std::map<std::string, std::string>& words, scan_shaper& shaper);
+                   scan_shaper& shaper);
 
   /// The filters now.
   [[nodiscard]] const filter_settings& filters() const noexcept { return now_; }

@@ -120,7 +120,7 @@ live_lidar* open_by_keywords(
     double transport_delay, double speed, bool loop, double begin, std::optional<double> end,
     std::optional<std::uint32_t> raw_sample_rate_hz, const std::optional<std::string>& model,
     std::optional<double> zero_angle, const std::optional<path_text>& record, bool overwrite,
-    double device_wait, bool listen_only, bool insist_on_model) {
+    double device_wait, bool listen_only, bool insist_on_model, bool leave_dtr) {
   lidar_options options;
   options.model = model_of(model);
   options.baud = baud;
@@ -128,6 +128,7 @@ live_lidar* open_by_keywords(
   options.reconnect = reconnect;
   options.listen_only = listen_only;
   options.insist_on_model = insist_on_model;
+  options.leave_dtr = leave_dtr;
   options.partial_scans = partial_scans;
   options.tuning.answer_time = in_milliseconds(answer_time);
   options.tuning.stall_time = in_milliseconds(stall_time);
@@ -239,7 +240,7 @@ void bind_open(nb::module_& module, keyword_types<Wanted...>, std::index_sequenc
       "loop"_a = false, "begin"_a = 0.0, "end"_a = nb::none(), "raw_sample_rate_hz"_a = nb::none(),
       "model"_a = nb::none(), "zero_angle"_a = nb::none(), "record"_a = nb::none(),
       "overwrite"_a = false, "device_wait"_a = 0.0, "listen_only"_a = false,
-      "insist_on_model"_a = false,
+      "insist_on_model"_a = false, "leave_dtr"_a = false,
       "Opens a lidar and queries its identity; a device that is scanning is stopped first. "
       "`device`: '' for the only lidar; "
       "a path; 'serial:2021101000070073' (the number of the lidar); 'usb:1-1.4'; 'tcp:host:port'; "
@@ -267,7 +268,7 @@ void bind_open(nb::module_& module, keyword_types<Wanted...>, std::index_sequenc
       "the bytes may not have. `record`: the MCAP file to which the lidar is recorded; an existing "
       "file only with `overwrite`, and never the file that is read. `listen_only`: not a byte is "
       "sent; settings and requests are refused. `insist_on_model`: `model` is right, whatever "
-      "number the lidar reports.\n\n"
+      "number the lidar reports. `leave_dtr`: the line DTR of the port is not set.\n\n"
       "Takes about 0.06 s with a healthy device, at most 15 s. Raises an Error.");
 }
 

@@ -189,7 +189,7 @@ void bind_reader(nb::module_& module) {
           "serial_number",
           [](const recording& from) -> std::optional<std::string> {
             const auto& known = from.reader().device();
-            if (!known) return std::nullopt;
+            if (!known || !known->information.is_known()) return std::nullopt;
             return std::string(known->information.serial_number());
           },
           "Of the recorded lidar; None if not known so far.")

@@ -1,10 +1,14 @@
 # SPDX-License-Identifier: MIT
 """Other models than the G4: raw bytes, recordings, and the intensity in messages."""
+import subprocess
+import sys
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
 import pytest
+from conftest import PATIENCE
 
 import g4lidar
 from g4lidar import errors
@@ -60,6 +64,8 @@ def test_the_model_of_bytes_and_recordings(tmp_path: Path) -> None:
     for call in unknown:
         with pytest.raises(errors.BadOption, match="'x44' is not one of g4, g4-pro, "):
             call()
+    with pytest.raises(errors.BadOption, match="'LD19' is not supported: a lidar of LDROBOT, usual driver ldlidar_stl"):
+        g4lidar.open(raw, model="LD19")
 
 
 def test_messages_have_the_intensity(tmp_path: Path) -> None:
@@ -193,7 +199,7 @@ def test_the_offset_of_zero(tmp_path: Path) -> None:
 
 def test_a_lidar_that_is_listened_to_gets_no_byte() -> None:
     simulator = g4lidar.Simulator(model="t-mini-plus", faults=["scanning"])
-    with g4lidar.open(simulator, listen_only=True) as lidar:
+    with g4lidar.open(simulator, listen_only=True, leave_dtr=True) as lidar:
         lidar.start()
         for scan, _ in zip(lidar.scans(), range(3)):
             assert len(scan) > 0
@@ -209,3 +215,21 @@ def test_what_contradicts_the_model_is_reported() -> None:
         known = lidar.recognition
     assert known["number"] == 153
     assert "153, which no known model has" in str(known["contradictions"])
+
+
+@pytest.mark.parametrize("page", ["README.md", "docs/python.md"])
+def test_the_shortest_program_runs_with_each_model(page: str) -> None:
+    text = (Path(__file__).parents[2] / page).read_text(encoding="utf-8")
+    program = text.split("```python\n")[1].split("```")[0]
+    with pytest.raises(errors.BadOption) as refused:
+        g4lidar.open("sim:", model="none")
+    words = str(refused.value).split("is not one of ")[1].split(".")[0].split(", ")
+    assert len(words) > 30
+
+    def run(word: str) -> str:
+        done = subprocess.run([sys.executable, "-c", program, f"sim:?model={word}"], capture_output=True, text=True,
+                              timeout=PATIENCE, check=False)
+        return "" if done.returncode == 0 and "points" in done.stdout else f"{word}: {done.stderr}"
+
+    with ThreadPoolExecutor(8) as pool:
+        assert [wrong for wrong in pool.map(run, words) if wrong] == []

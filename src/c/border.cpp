@@ -125,7 +125,7 @@ bool take_model(const char* word, const model*& into) noexcept {
 
 int refuse_model(g4lidar_error* out, const char* given) {
   const std::string_view word(given != nullptr ? given : "");
-  const bool is_known = !other_product(word).empty();
+  const bool is_known = !why_unsupported(word).empty();
   return fail(out, G4LIDAR_BAD_OPTION, G4LIDAR_CONFIGURING,
               "model: " + (is_known ? why_no_model(word)
                                     : "there is none with the word " + in_quotes(word)),

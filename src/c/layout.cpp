@@ -72,6 +72,7 @@ static_assert(offsetof(g4lidar_options, zero_angle_cdeg) == aligned(3 * word) + 
 static_assert(offsetof(g4lidar_options, has_zero_angle) == aligned(3 * word) + 68 + 4 * word);
 static_assert(offsetof(g4lidar_options, probe_all_ports) == aligned(3 * word) + 72 + 4 * word);
 static_assert(offsetof(g4lidar_options, insist_on_model) == aligned(3 * word) + 74 + 4 * word);
+static_assert(offsetof(g4lidar_options, leave_dtr) == aligned(3 * word) + 75 + 4 * word);
 static_assert(offsetof(g4lidar_scan, time_ns) == 2 * word);
 static_assert(offsetof(g4lidar_scan, is_piece) == 2 * word + 61);
 static_assert(offsetof(g4lidar_scan, turn_deg) == 2 * word + 62);

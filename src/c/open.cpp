@@ -122,6 +122,7 @@ int take_lidar_options(const g4lidar_options* given, opening& into, g4lidar_erro
   into.how.baud = taken.baud;
   into.how.probe_all_ports = taken.probe_all_ports;
   into.how.listen_only = taken.listen_only;
+  into.how.leave_dtr = taken.leave_dtr;
   into.how.insist_on_model = taken.insist_on_model;
   into.how.reconnect = taken.reconnect;
   into.how.partial_scans = taken.partial_scans;

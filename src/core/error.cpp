@@ -119,7 +119,7 @@ struct detail_words {
   std::string_view cause;
   std::string_view advice;
 };
-constexpr std::array<detail_words, 23> all_details{{
+constexpr std::array<detail_words, 24> all_details{{
     {"no scan arrived in time, because the motor spins up",
      "Call again or wait longer: the first scan arrives about 0.7 s after the start, later with a "
      "heavy or cold motor. If the head does not turn within 10 s, check the power supply."},
@@ -198,8 +198,11 @@ constexpr std::array<detail_words, 23> all_details{{
      "`g4-dump doctor <port>` looks at one of them: then name it. Or look at all of them "
      "(--all-ports; in a program the "
      "option probe_all_ports). Else connect the lidar with a data cable, and check `dmesg`."},
+    {"no command is sent to this lidar, because it is only listened to or answers nothing",
+     "Omit the setting or the request, or open the lidar without listening only (--listen; in a "
+     "program the option listen_only). If it answers nothing, check the wire to its Rx pin."},
 }};
-static_assert(all_details.size() == static_cast<std::size_t>(error_detail::other_bridges));
+static_assert(all_details.size() == static_cast<std::size_t>(error_detail::only_listens));
 
 constexpr bool in_order() {
   for (std::size_t i = 0; i < all_words.size(); ++i) {

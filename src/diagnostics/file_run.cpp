@@ -53,7 +53,7 @@ class file_run {
     auto opened = recording_reader::open(path, {.is_cancelled = log_.options().is_cancelled});
     if (!opened) return fail(opened.error());
     recording_reader& reader = *opened;
-    const auto wrong = problem_with_model(&model_, &reader.model(), "the recording");
+    const auto wrong = problem_with_model(log_.options().model, &reader.model(), "the recording");
     if (wrong) return fail(*wrong);
     const auto read = reader.for_each([this](const recorded_item& item) {
       take(item);
@@ -70,6 +70,10 @@ class file_run {
       }
       device_.frequency = device->frequency;
       if (device->sample_rate) device_.sample_rate_hz = to_hz(*device->sample_rate);
+      if (device->recognised) {
+        if (!port_.remark.empty()) port_.remark += " ";
+        port_.remark += contradictions_of(*device->recognised);
+      }
     }
     seconds_ = static_cast<double>(detail::saturating_sub(last_ns_, reader.first_ns())) / 1e9;
     return true;
@@ -231,12 +235,21 @@ class file_run {
   double seconds_ = 0.0;
 };
 
+/// As which model the lidar of a recording was read, if it is not the one of the recording; else null.
+const model* read_as_in(const std::string& path) {
+  if (!is_recording(path)) return nullptr;
+  const auto opened = recording_reader::open(path);
+  if (!opened || !opened->device() || !opened->device()->recognised) return nullptr;
+  return opened->device()->recognised->model;
+}
+
 }  // namespace
 
 void examine_file(const std::string& source, stage_log& log) {
   const model* which = log.options().model;
   if (which == nullptr) {
     which = model_of_source(source, log.options().is_cancelled).value_or(nullptr);
+    if (const model* const used = read_as_in(path_of_source(source))) which = used;
   }
   if (which == nullptr) which = &g4_model;  // the file has gone, or cannot be read
   file_run(log, *which).run(path_of_source(source));

@@ -26,24 +26,41 @@ std::string lowered(std::string_view text) {
   return low;
 }
 
-/// What follows "udp:" and the like, without "//".
-std::string_view address_in(std::string_view name, std::string_view low) noexcept {
-  constexpr std::array<std::string_view, 8> schemes{
-      "udp:", "socket:", "rfc2217:", "telnet:", "net:", "network:", "ip:", "http:"};
-  for (const std::string_view scheme : schemes) {
-    if (!low.starts_with(scheme)) continue;
-    name.remove_prefix(scheme.size());
-    return name.starts_with("//") ? name.substr(2) : name;
+/// `name` without blanks and quotes around it, and with "/" for each "\\".
+std::string plain(std::string_view name) {
+  constexpr std::string_view around = " \t\"'";
+  const std::size_t first = name.find_first_not_of(around);
+  if (first == std::string_view::npos) return {};
+  std::string text(name.substr(first, name.find_last_not_of(around) + 1 - first));
+  std::ranges::replace(text, '\\', '/');
+  return text;
+}
+
+/// What follows one of `prefixes` in `name`, without slashes before it; empty if none begins it.
+template <std::size_t Count>
+std::string_view behind(std::string_view name, std::string_view low,
+                        const std::array<std::string_view, Count>& prefixes) noexcept {
+  for (const std::string_view prefix : prefixes) {
+    if (!low.starts_with(prefix)) continue;
+    name.remove_prefix(std::min(name.find_first_not_of('/', prefix.size()), name.size()));
+    return name;
   }
   return {};
 }
 
-/// "10.0.0.2:4000", "robot:4000", "[::1]:4000", "10.0.0.2"
+/// Not those of a library: "tcp/" is a slip for "tcp:".
+constexpr std::array<std::string_view, 12> network_schemes{
+    "udp:", "socket:", "rfc2217:", "telnet:", "net:",     "network:",
+    "ip:",  "http:",   "https:",   "ws:",     "ser2net:", "tcp/"};
+constexpr std::array<std::string_view, 4> port_schemes{"tty:", "device:", "port:", "port="};
+
+/// "10.0.0.2:4000", "robot:4000", "[::1]:4000", "10.0.0.2", "localhost", "robot.local"
 bool is_address(std::string_view name) noexcept {
   if (name.find('/') != std::string_view::npos) return false;
   const std::size_t colon = name.rfind(':');
   if (colon == std::string_view::npos) {
-    return is_digits(name, ".") && std::ranges::count(name, '.') == 3;
+    const bool is_number = is_digits(name, ".") && std::ranges::count(name, '.') == 3;
+    return is_number || name == "localhost" || (name.ends_with(".local") && name.size() > 6);
   }
   const std::string_view host = name.substr(0, colon);
   const bool is_host = host.find(':') == std::string_view::npos || host.starts_with('[');
@@ -51,20 +68,60 @@ bool is_address(std::string_view name) noexcept {
 }
 
 std::string tcp_name(std::string_view address) {
+  while (address.ends_with('/')) address.remove_suffix(1);
   const bool has_port = address.find(':') != std::string_view::npos;
   return std::string(tcp_prefix).append(address).append(has_port ? "" : ":PORT");
 }
 
-/// "ttyUSB0", "/ttyUSB0", "dev/ttyUSB0", "lidar" where there is a /dev/lidar.
-std::string port_meant_by(std::string_view name) {
-  std::string_view node = name.starts_with('/') ? name.substr(1) : name;
-  if (node.starts_with("dev/")) node.remove_prefix(4);
-  if (node.empty() || node.find('/') != std::string_view::npos || name.starts_with("/dev/"))
-    return {};
-  std::string path = "/dev/" + std::string(node);
-  const bool is_usual = (node.starts_with("tty") && node.size() > 3) ||
-                        (node.starts_with("serial") && is_digits(node.substr(6)));
-  return is_usual || ::access(path.c_str(), F_OK) == 0 ? path : "";
+constexpr std::string_view usual_port = "/dev/ttyUSB0";
+
+/// "COM3", "com12:", "//./COM10", "/dev/cu.usbserial-10": of other systems.
+bool is_port_elsewhere(std::string_view low) noexcept {
+  if (low.starts_with("//./")) low.remove_prefix(4);
+  if (low.starts_with("com")) return is_digits(low.substr(3, low.find(':') - 3));
+  if (low.starts_with("/dev/")) low.remove_prefix(5);
+  return low.starts_with("cu.") || low.starts_with("tty.");
+}
+
+/// Behind "tty" in the names of ports, with a number behind it.
+constexpr std::array<std::string_view, 9> kinds_of_ports{"USB", "ACM", "AMA", "THS",  "S",
+                                                         "O",   "SC",  "mxc", "XRUSB"};
+constexpr std::size_t certain_kind = 3;  // characters that need no "tty"
+
+/// "ttyUSB0" for "TTYusb0", "USB0"; "serial0" for "Serial0"; empty for others.
+std::string usual_node(std::string_view node) {
+  const std::string low = lowered(node);
+  const bool has_tty = low.starts_with("tty");
+  const std::string_view rest = std::string_view(low).substr(has_tty ? 3 : 0);
+  if (rest.starts_with("serial") && is_digits(rest.substr(6))) return std::string(rest);
+  for (const std::string_view kind : kinds_of_ports) {
+    if (!has_tty && kind.size() < certain_kind) continue;
+    const bool is_kind = rest.starts_with(lowered(kind)) && is_digits(rest.substr(kind.size()));
+    if (is_kind) return std::string("tty").append(kind).append(rest.substr(kind.size()));
+  }
+  return {};
+}
+
+/// "ttyUSB0", "/ttyUSB0", "dev/ttyUSB0", "USB0", "/dev/ttyusb0", "ttyUSB0:", "ttyUSB0,230400"; "lidar" where there is a
+/// /dev/lidar. Empty if `given` is that already.
+std::string port_meant_by(std::string_view name, std::string_view given) {
+  std::string node(name);
+  std::erase(node, ' ');
+  node.erase(0, node.find_first_not_of('/'));
+  if (lowered(node).starts_with("dev/")) node.erase(0, node.find_first_not_of('/', 4));
+  const std::size_t end = node.find_first_of(":,@");
+  if (end != std::string::npos && (end + 1 == node.size() || is_digits(node.substr(end + 1))))
+    node.erase(end);  // a baud rate behind it
+  if (node.empty()) return {};
+  if (node.starts_with("by-id/") || node.starts_with("by-path/")) node.insert(0, "serial/");
+  if (!node.starts_with("serial/") && node.find('/') != std::string::npos) return {};
+  std::string usual = usual_node(node);
+  const std::string path = "/dev/" + (usual.empty() ? node : usual);
+  const bool is_known = !usual.empty() || node.starts_with("serial/") ||
+                        (node.starts_with("tty") && node.size() > 3) ||
+                        ::access(path.c_str(), F_OK) == 0;
+  const bool is_new = path != given && (!usual.empty() || !name.starts_with("/dev/"));
+  return is_known && is_new ? path : "";
 }
 
 struct known_bridge {
@@ -115,28 +172,29 @@ bool is_reserved(const port_info& port) {
   return (consoles + " ").find(" " + std::string(name) + " ") != std::string::npos;
 }
 
-std::string meant_by(std::string_view name) {
-  const std::string given(name);
-  if (::access(given.c_str(), F_OK) == 0) return {};
-  const std::string low = lowered(name);
+std::string meant_by(std::string_view given) {
+  if (::access(std::string(given).c_str(), F_OK) == 0) return {};
+  const std::string text = plain(given);
+  const std::string low = lowered(text);
+  const std::string_view name = text;
   for (const std::string_view prefix : {serial_prefix, usb_prefix, tcp_prefix,
                                         std::string_view("file:"), std::string_view("sim:")}) {
     if (!low.starts_with(prefix)) continue;
     const std::string_view rest = name.substr(prefix.size());
     if (!name.starts_with(prefix)) return std::string(prefix).append(rest);
-    const bool is_port = prefix == serial_prefix || prefix == usb_prefix;
-    if (is_port && rest.starts_with("/dev/")) return std::string(rest);
-    return is_port ? port_meant_by(rest) : "";
+    if (prefix == tcp_prefix && rest.starts_with('/') && !rest.starts_with("//"))
+      return tcp_name(rest.substr(1));
+    if (prefix != serial_prefix && prefix != usb_prefix) return {};
+    const std::string_view port = rest.starts_with("//") ? rest.substr(2) : rest;
+    return port.starts_with("/dev/") ? std::string(port) : port_meant_by(port, given);
   }
-  if (low == "sim" || low.starts_with("sim?")) return "sim:" + given.substr(3);
-  if (const std::string_view address = address_in(name, low); !address.empty()) {
+  if (low == "sim" || low.starts_with("sim?")) return "sim:" + text.substr(3);
+  if (const auto address = behind(name, low, network_schemes); !address.empty())
     return tcp_name(address);
-  }
-  const std::string_view windows =
-      low.starts_with("\\\\.\\com") ? std::string_view(low).substr(4) : low;
-  if (windows.starts_with("com") && is_digits(windows.substr(3, windows.find(':') - 3))) {
-    return "/dev/ttyUSB0";
-  }
+  if (const auto port = behind(name, low, port_schemes); !port.empty())
+    return port_meant_by(port, given);
+  if (is_port_elsewhere(low)) return std::string(usual_port);
+  if (std::string port = port_meant_by(name, given); !port.empty()) return port;
   if (is_address(name)) return tcp_name(name);
   if (is_digits(name) && name.size() == 16) return std::string(serial_prefix).append(name);
   const std::size_t dash = name.find('-');
@@ -144,13 +202,14 @@ std::string meant_by(std::string_view name) {
       is_digits(name.substr(dash + 1), ".")) {
     return std::string(usb_prefix).append(name);
   }
-  return port_meant_by(name);
+  const bool is_in_quotes = name != given && given.find(name) != std::string_view::npos;
+  return is_in_quotes ? text : "";
 }
 
 std::optional<error> misspelled(std::string_view name) {
   const std::string meant = meant_by(name);
   if (meant.empty()) return std::nullopt;
-  const bool is_scheme = !address_in(name, lowered(name)).empty();
+  const bool is_scheme = !behind(name, lowered(name), network_schemes).empty();
   const std::string subject = std::string(name.substr(0, 60)) +
                               (is_scheme ? " (not supported; did" : " (did") + " you mean " +
                               meant + "?)";

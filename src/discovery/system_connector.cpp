@@ -91,6 +91,7 @@ result<std::unique_ptr<connector>> system_connector::find(std::string_view devic
   const bool has_one_rate = known.baud != 0 || (named != nullptr && named->bauds[1] == 0);
   std::unique_ptr<system_connector> made(new system_connector(device, first_baud, named));
   made->probes_all_ports_ = probes_all_ports;
+  made->leaves_dtr_ = known.leave_dtr;
   if (named != nullptr && has_one_rate && !always) return made;
   made->is_searched_ = named == nullptr;
   made->named_baud_ = known.baud;
@@ -105,7 +106,7 @@ result<void> system_connector::search_first(search_options known) {
     return {};
   }
   transport& port = **opened;
-  known.may_pulse_dtr = named_ != nullptr || names_path(device_);
+  known.may_pulse_dtr = !known.leave_dtr && (named_ != nullptr || names_path(device_));
   auto lidar = search(port, port.now_ns() + opening_search_ns, known);
   if (!lidar) {
     const error why = with_port_conflict(lidar.error(), port);
@@ -141,6 +142,7 @@ result<std::unique_ptr<transport>> system_connector::connect() noexcept {
 result<std::unique_ptr<transport>> system_connector::open_transport() {
   const std::string_view device = device_;
   if (device.starts_with(tcp_prefix)) {
+    if (const auto wrong = misspelled(device)) return tl::unexpected(*wrong);
     tcp_options how;
     how.baud = baud_;
     return tcp_port::open(device.substr(tcp_prefix.size()), how);
@@ -154,7 +156,7 @@ result<std::unique_ptr<transport>> system_connector::first_connect() {
   how.baud = named_baud_;
   const auto port = select_port(device_, how);
   if (!port) return tl::unexpected(port.error());
-  auto opened = serial_port::open(port->path, {.baud = baud_});
+  auto opened = serial_port::open(port->path, {.baud = baud_, .leave_dtr = leaves_dtr_});
   if (opened) {
     first_ = *port;
     last_path_ = port->path;
@@ -178,7 +180,7 @@ result<std::unique_ptr<transport>> system_connector::connect_again() {
     const std::string next = std::move(paths_.front());
     paths_.erase(paths_.begin());
     if (next.empty()) break;
-    if (auto opened = serial_port::open(next, {.baud = baud_})) {
+    if (auto opened = serial_port::open(next, {.baud = baud_, .leave_dtr = leaves_dtr_})) {
       last_path_ = next;
       return opened;
     }

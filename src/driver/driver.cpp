@@ -42,7 +42,9 @@ result<void> lidar::driver::open() {
   if (parts_.link.from().traits().recognised.was_stopped) {
     parts_.events.put({lidar_event::kind::found_scanning, problem::timeout, parts_.link.now_ns()});
   }
-  return source_->open();
+  auto opened = source_->open();
+  if (opened) parts_.recognised.record(parts_.link.from());
+  return opened;
 }
 
 result<void> lidar::driver::close() {

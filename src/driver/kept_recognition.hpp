@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <new>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "discovery/model_choice.hpp"
 #include "g4lidar/device_information.hpp"
 #include "g4lidar/recognition.hpp"
+#include "g4lidar/recording/recorded_event.hpp"
 
 namespace g4lidar {
 
@@ -52,6 +54,17 @@ class kept_recognition {
     what_.model = candidates_.front();
     what_.by = known_by::samples;
     return what_.model;
+  }
+
+  /// For the recording of `from`, if there is one: what contradicts the model, if something does.
+  void record(connector& from) const noexcept {
+    recording_hook* const hook = recording_hook_of(from);
+    if (hook == nullptr) return;
+    try {
+      if (!contradictions_of(get()).empty()) hook->recognised(get());
+    } catch (const std::bad_alloc&) {
+      return;  // the recording is without it
+    }
   }
 
   std::optional<device_information>

@@ -29,7 +29,8 @@ using std::chrono::milliseconds;
 std::string model_words() { return list_of(models, &model::word); }
 std::string why_no_model(std::string_view label) {
   const std::string given = in_quotes(label);
-  if (!other_product(label).empty()) return given + " is not supported: it has another protocol";
+  if (const auto why = why_unsupported(label); !why.empty())
+    return (given + " is not supported: ").append(why);
   return given + " is not one of " + model_words();
 }
 std::string model_words(std::span<const model* const> which) {
@@ -108,7 +109,7 @@ result<lidar> lidar::open(std::unique_ptr<connector> from, const lidar_options& 
   }
   lidar_options used = options;
   if (stated != nullptr) used.model = stated;
-  if (behind.recognised.is_silent) used.listen_only = true;
+  if (behind.recognised.is_silent && behind.answers) used.listen_only = true;
   if (used.model == nullptr) used.model = &g4_model;
   const option_users users = behind.answers ? live | port : recording | raw_file | pipe;
   if (const auto wrong = problem_with_users(used, users)) return tl::unexpected(*wrong);

@@ -163,6 +163,10 @@ result<answer> listening_driver::ask(const request& wanted, while_scanning /*how
   const auto condition = stream_.reported().condition();
   if (wanted.what == request_kind::device_info && information_.is_known()) return information_;
   if (wanted.what == request_kind::health && condition) return *condition;
+  if (options_.model->link == link_kind::two_way) {  // which has such a command, or not
+    return failure(task::asking, problem::not_supported,
+                   error_context(connection_.name()).add(wanted), 0, error_detail::only_listens);
+  }
   const error refused = refusal_error(task::asking, refusal::not_supported, wanted, *options_.model,
                                       connection_.name());
   return tl::unexpected(with_candidates(refused, recognised_.get().candidates));

@@ -25,6 +25,7 @@ live_stream::live_stream(const parts& of, const lidar_options& options)
       link_(of.pipeline.input(), nullptr, times_for(options.tuning), device_link::usual_cut_off_ns,
             *options.model, options.listen_only),
       motor_(options.model->motor),
+      leaves_dtr_(options.leave_dtr),
       reported_(*options.model, link_.listens()),
       sample_rate_hz_(first_rate_hz(*options.model)) {}
 
@@ -139,7 +140,8 @@ void live_stream::begin_points() {
 
 result<void> live_stream::set_motor(bool on) {
   constexpr std::int64_t low_ns = 100'000'000;
-  if (motor_ != motor_kind::dtr || !of_.on.is_open() || (!on && !is_line_high_)) return {};
+  const bool has_line = motor_ == motor_kind::dtr && !leaves_dtr_;
+  if (!has_line || !of_.on.is_open() || (!on && !is_line_high_)) return {};
   const auto set = of_.on.on().set_dtr(on);
   if (!set) return tl::unexpected(set.error());
   if (!*set) return {};  // no such line: the motor turns by other means

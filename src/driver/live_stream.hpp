@@ -74,8 +74,8 @@ class live_stream {
   /// Uses the sample rate, if it is the answer.
   void learn(const answer& heard);
 
-  /// Sets the line DTR where it drives the motor, which starts at an edge to high. Without a connection nothing
-  /// happens.
+  /// Sets the line DTR where it drives the motor, which starts at an edge to high. Without a connection, and with
+  /// lidar_options::leave_dtr, nothing happens.
   [[nodiscard]] result<void> set_motor(bool on);
   /// When the line has been low for long enough, so that the motor may be started.
   [[nodiscard]] std::int64_t motor_ready_ns() const noexcept { return motor_ready_ns_; }
@@ -102,6 +102,7 @@ class live_stream {
   read_pace pace_;
   device_link link_;
   motor_kind motor_;
+  bool leaves_dtr_;
   identity_reader reported_;
   unrecognised_bytes heard_;
   change_signs changes_;  // of what came before the device was identified

@@ -65,6 +65,7 @@ constexpr std::array option_rows{
     row("baud", live, [](auto& of) -> auto& { return of.baud; }),
     row("insist_on_model", live, [](auto& of) -> auto& { return of.insist_on_model; }),
     row("listen_only", live, [](auto& of) -> auto& { return of.listen_only; }),
+    row("leave_dtr", live, [](auto& of) -> auto& { return of.leave_dtr; }),
     row("probe_all_ports", port, [](auto& of) -> auto& { return of.probe_all_ports; }),
     row("sample_rate", live, [](auto& of) -> auto& { return of.sample_rate; }),
     row("frequency", live, [](auto& of) -> auto& { return of.frequency; }),
@@ -143,7 +144,8 @@ std::optional<error> problem_with_settings(const lidar_options& options) noexcep
     const request change = requests::set(*setting);
     if (options.listen_only) {
       found.emplace(task::configuring, problem::not_supported,
-                    error_context(of.name).add(", listen_only"));
+                    error_context(of.name).add(", ").add(which.name), 0,
+                    error_detail::only_listens);
     } else if (!has_request(which, change.what)) {
       found.emplace(task::configuring, problem::not_supported,
                     error_context(of.name).add(", ").add(which.name).add_ways(which));

@@ -204,10 +204,10 @@ bool replay_player::parse_bytes() {
       if (stated_.identity.take_news()) {
         const device_information who = stated_.identity.who().value_or(device_information{});
         if (!information_.is_known()) information_ = who;
-        if (stated_.identity.has_other_number()) {
-          recognised_.set_device(who.model, 0);
-          report(lidar_event::kind::other_number);
-        }
+        const bool is_other = stated_.identity.has_other_number();
+        const bool answers = recognised_.get().model->link == link_kind::two_way;  // with all bits
+        if (is_other || answers) recognised_.set_device(who.model, 0);
+        if (is_other) report(lidar_event::kind::other_number);
       }
       if (const auto zero = pipeline_.zero().angle(); zero != stated_.recorded_zero) {
         stated_.record(

@@ -64,6 +64,7 @@ search_options known_of(const lidar_options& options, const model* named) {
   return {.model = named,
           .baud = options.baud,
           .listen_only = options.listen_only,
+          .leave_dtr = options.leave_dtr,
           .is_cancelled = options.is_cancelled};
 }
 

@@ -172,15 +172,12 @@ const parameter* find_parameter(std::string_view name) {
 }
 
 lidar_parameters::lidar_parameters(const shaping_options& how, filter_settings start,
-                                   g4lidar::mask mask,
-                                   const std::map<std::string, std::string>& words,
-                                   scan_shaper& shaper)
+                                   g4lidar::mask mask, scan_shaper& shaper)
     : how_(how), mask_(std::move(mask)), shaper_(shaper), now_(std::move(start)) {
   shape();
   const point_filter& filter = now_.filter;
   fix("range_min", static_cast<double>(filter.least_range_mm) / 1e3);
   fix("range_max", std::min(static_cast<double>(filter.greatest_range_mm) / 1e3, 100.0));
-  for (const auto& [name, word] : words) fix(name, word);
 }
 
 void lidar_parameters::shape() {

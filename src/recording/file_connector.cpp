@@ -62,12 +62,19 @@ class file_connector final : public connector, public recording_hook {
     return {.answers = false,
             .counts_time = is_counted,
             .wall_ahead_ns = of_->wall_ahead_ns(),
-            .recognised = {.model = &of_->items().source().model(),
-                           .by = of_->items().source().recognised_by()}};
+            .recognised = read_as()};
   }
   [[nodiscard]] played_file* file() const noexcept { return of_.get(); }
 
  private:
+  /// What contradicted when it was recorded, contradicts now.
+  [[nodiscard]] recognition read_as() const noexcept {
+    recognition known = of_->device().recognised.value_or(recognition{});
+    known.model = &of_->items().source().model();
+    known.by = of_->items().source().recognised_by();
+    return known;
+  }
+
   std::shared_ptr<played_file> of_;
 };
 

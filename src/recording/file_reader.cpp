@@ -102,7 +102,9 @@ void recording_reader::file_reader::read_summary() {
 void recording_reader::file_reader::read_front() {
   if (device_ || chunks_->summary_start() != 0) return;
   chunk_source front(file_);
-  for (int i = 0; i < blocks_at_front && !device_; ++i) {
+  // What contradicts may be known, and recorded, before the device information.
+  const auto is_known = [this] { return device_ && device_->information.is_known(); };
+  for (int i = 0; i < blocks_at_front && !is_known(); ++i) {
     const auto block = front.next();
     if (block.records.empty()) break;
     field_reader records(block.records);

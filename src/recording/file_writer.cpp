@@ -180,8 +180,11 @@ void recording_writer::file_writer::odometry(const stamped_odometry& what) noexc
 
 void recording_writer::file_writer::device(const recorded_device& known) noexcept {
   static_cast<void>(guarded([&]() -> result<void> {
+    const recorded_device before = device_.value_or(recorded_device{});
     device_ = known;
-    metadata(mcap::device_metadata, mcap::words_of(known));
+    if (!known.recognised) device_->recognised = before.recognised;
+    if (!known.information.is_known()) device_->information = before.information;
+    metadata(mcap::device_metadata, mcap::words_of(*device_));
     return {};
   }));
 }

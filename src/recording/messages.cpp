@@ -109,6 +109,14 @@ void take_firmware(device_information& who, std::string_view text) noexcept {
   }
 }
 
+/// From what the model of the recorded lidar was known.
+known_by known_by_from(std::string_view word) {
+  constexpr std::array all{known_by::user, known_by::recording, known_by::number,
+                           known_by::samples};
+  const auto* const at = std::ranges::find(all, word, [](known_by each) { return name_of(each); });
+  return at == all.end() ? known_by::nothing : *at;
+}
+
 }  // namespace
 
 void put_recorded_bytes(record_text& out, bytes data, std::int64_t time_ns) {
@@ -221,6 +229,14 @@ word_map words_of(const recorded_device& device) {
       {"hardware", std::to_string(who.hardware)},
       {"serial_number", std::string(who.serial_number())},
   };
+  if (const auto& read = device.recognised; read && read->model != nullptr) {
+    if (!who.is_known()) words.clear();
+    words.emplace_back("read_as", read->model->word);
+    words.emplace_back("known_by", name_of(read->by));
+    words.emplace_back("number", std::to_string(read->number));
+    words.emplace_back("baud", std::to_string(read->baud));
+    words.emplace_back("is_silent", read->is_silent ? "yes" : "no");
+  }
   if (device.frequency) words.emplace_back("frequency_chz", std::to_string(device.frequency->chz));
   if (device.sample_rate) words.emplace_back("sample_rate", rate_text(*device.sample_rate));
   put_setting(words, "motor_direction", device.motor);
@@ -232,6 +248,7 @@ word_map words_of(const recorded_device& device) {
 
 recorded_device device_of(field_reader& map) {
   recorded_device device;
+  recognition read;
   device_information& who = device.information;
   who.serial_digits.fill('0');
   for_each_word(map, [&](std::string_view name, std::string_view value) {
@@ -248,7 +265,13 @@ recorded_device device_of(field_reader& map) {
     if (name == "constant_frequency") take_setting(device.constant, value);
     if (name == "low_power") take_setting(device.idle, value);
     if (name == "power_down_protection") take_setting(device.protection, value);
+    if (name == "read_as") read.model = model_named(value);
+    if (name == "known_by") read.by = known_by_from(value);
+    if (name == "number") read.number = number_in<std::uint8_t>(value).value_or(0);
+    if (name == "baud") read.baud = number_in<std::uint32_t>(value).value_or(0);
+    if (name == "is_silent") read.is_silent = value == "yes";
   });
+  if (read.model != nullptr) device.recognised = read;
   return device;
 }
 

@@ -81,7 +81,11 @@ result<std::unique_ptr<connector>> replay::open(std::string_view path,
   auto reader = recording_reader::open(path, range);
   if (!reader) return tl::unexpected(reader.error());
   auto device = reader->device();
-  if (!device) device = device_in(path, range.is_cancelled);
+  if (!device || !device->information.is_known()) {
+    const auto shown = device_in(path, range.is_cancelled);
+    if (!device) device = shown;
+    if (shown) device->information = shown->information;
+  }
   auto items = std::make_unique<recorded_items>(std::move(*reader), path, range);
   return connect_to(std::make_shared<played_file>(
       std::move(items), path, options, device.value_or(recorded_device{}), std::move(waits)));

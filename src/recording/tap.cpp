@@ -114,6 +114,16 @@ class recorded_connector final : public forwarding_connector,
     if (inner_hook_ != nullptr) inner_hook_->event(what);
     into_->event(what);
   }
+  void recognised(const recognition& what) noexcept override {
+    if (inner_hook_ != nullptr) inner_hook_->recognised(what);
+    const bool is_same = recognised_ && recognised_->model == what.model &&
+                         recognised_->number == what.number && recognised_->baud == what.baud &&
+                         recognised_->is_silent == what.is_silent;
+    if (is_same) return;  // after a reconnect
+    recognised_ = what;
+    recognised_->candidates = {};  // which are valid as long as the lidar
+    into_->device({.recognised = recognised_});
+  }
 
   [[nodiscard]] std::optional<recorded_event> next_event() noexcept override {
     const auto what = played_->next_event();
@@ -141,6 +151,7 @@ class recorded_connector final : public forwarding_connector,
   Writer* into_;
   recording_hook* inner_hook_;     // null: a device that nobody else records
   recorded_event_source* played_;  // null: a device, or a file without events
+  std::optional<recognition> recognised_;
 };
 
 }  // namespace
@@ -182,6 +193,7 @@ class recording_switch::observer {
     if (to_ != nullptr) to_->event(what);
   }
   void device(const recorded_device& known) noexcept {
+    if (known.recognised) recognised_ = known.recognised;
     if (to_ != nullptr) to_->device(known);
   }
   void set_wall_clock(std::int64_t ahead_ns) noexcept {
@@ -194,6 +206,7 @@ class recording_switch::observer {
     to_ = &to;
     if (wall_ahead_ns_) to.set_wall_clock(*wall_ahead_ns_);
     to.event(state_.as_event(latest_ns_));
+    if (recognised_) to.device({.recognised = recognised_});
     return true;
   }
   void off() noexcept { to_ = nullptr; }
@@ -206,6 +219,7 @@ class recording_switch::observer {
   mcap::transport_state state_;
   std::int64_t latest_ns_ = 0;
   std::optional<std::int64_t> wall_ahead_ns_;
+  std::optional<recognition> recognised_;
   recording_writer* to_ = nullptr;  // null: off
 };
 

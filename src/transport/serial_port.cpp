@@ -126,10 +126,10 @@ class serial_transport final : public fd_port {
   }
 
   // In this order, each once. The destructor reverts incomplete steps.
-  [[nodiscard]] result<void>
-  look() noexcept;  ///< Reads the current settings; not_serial if there are none.
+  /// Reads the current settings; not_serial if there are none.
+  [[nodiscard]] result<void> look() noexcept;
   [[nodiscard]] result<void> hold();
-  [[nodiscard]] result<void> configure();
+  [[nodiscard]] result<void> configure(bool drops);  ///< Whether the last close lowers DTR.
   void hasten() noexcept;
   [[nodiscard]] result<void> discard_input() noexcept;
 
@@ -212,10 +212,10 @@ tl::unexpected<error> serial_transport::refused_baud(std::uint32_t baud,
   }
 }
 
-result<void> serial_transport::configure() {
+result<void> serial_transport::configure(bool drops) {
   wanted_ = found_;
   cfmakeraw(&wanted_);
-  wanted_.c_cflag |= CLOCAL | CREAD | HUPCL;  // a killed program leaves no motor on that DTR drives
+  wanted_.c_cflag |= CLOCAL | CREAD | (drops ? HUPCL : 0U);  // also if the program is killed
   wanted_.c_cflag &= ~static_cast<tcflag_t>(CRTSCTS | CSTOPB);
   wanted_.c_iflag &= ~static_cast<tcflag_t>(IXOFF | INPCK);
   wanted_.c_cc[VMIN] =
@@ -336,7 +336,7 @@ result<std::unique_ptr<transport>> open_serial_transport(std::string_view path,
   if (options.exclusive) {
     if (const auto done = port->hold(); !done) return tl::unexpected(done.error());
   }
-  if (const auto done = port->configure(); !done) return tl::unexpected(done.error());
+  if (auto set = port->configure(!options.leave_dtr); !set) return tl::unexpected(set.error());
   if (options.low_latency) port->hasten();
   if (const auto done = port->discard_input(); !done) return tl::unexpected(done.error());
   return port;

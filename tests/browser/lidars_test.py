@@ -194,6 +194,16 @@ class RecognitionTest(PageTest):
         self.assertEqual(page.text("verdict"), "warn")
         self.assertGreaterEqual(self.numbers().items(), {"Model": "t-mini-plus", "Number": "153"}.items())
 
+    def test_directions_without_a_return_are_shown(self):
+        world = pathlib.Path(scratch.name) / "nothing.txt"
+        world.write_text("wall -900 900 900 900\nlidar 0 0 0\n", encoding="utf-8")
+        page = self.open(self.serve(f"sim:?world={world}"))
+        until(lambda: self.driver.find_elements(By.CSS_SELECTOR, "#advice [data-diagnosis=no_returns]"), "no returns")
+        self.assertEqual(page.text("verdict"), "warn")
+        world.write_text("wall 2 -1 2 1\nlidar 0 0 0\n", encoding="utf-8")
+        page = self.open(self.serve(f"sim:?world={world}")).runs()
+        until(lambda: "Nothing returned in" in page.text("stages"), "the sector")
+
     def test_those_that_send_the_same_are_shown(self):
         page = self.open(self.serve("front=sim:?model=x2", "rear=sim:", "--merge",
                                     "--mount", "front=0.3,0.1,20", "--mount", "rear=-0.4,-0.2,-150")).runs()

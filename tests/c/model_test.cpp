@@ -56,9 +56,30 @@ TEST_F(CModel, IsNamedInAnySpelling) {
     EXPECT_EQ(intensity_of(raw_, label), 101) << label;
     EXPECT_EQ(intensity_of(raw_ + "?model=" + label, nullptr), 101) << label;
   }
-  EXPECT_EQ(intensity_of(raw_, "GS2"), -1 - G4LIDAR_BAD_OPTION);
-  EXPECT_NE(std::string(why_.message).find("'GS2' is not supported"), std::string::npos)
-      << why_.message;
+  for (const std::string label : {"GS2", "LD19", "coin-d4", "RPLIDAR A1"}) {
+    EXPECT_EQ(intensity_of(raw_, label.c_str()), -1 - G4LIDAR_BAD_OPTION);
+    EXPECT_NE(std::string(why_.message).find("'" + label + "' is not supported: "),
+              std::string::npos)
+        << why_.message;
+  }
+}
+
+TEST_F(CModel, WhatIsListenedToGetsNoByte) {
+  g4lidar_options options = defaults();
+  EXPECT_FALSE(options.listen_only || options.leave_dtr);
+  options.device = "sim:?model=t-mini&fault=scanning";
+  options.listen_only = options.leave_dtr = true;
+  g4lidar_lidar* made = nullptr;
+  ASSERT_EQ(g4lidar_open_with(&options, &made, &why_), G4LIDAR_OK) << why_.message;
+  const lidar it(made);
+  EXPECT_EQ(g4lidar_start(made, &why_), G4LIDAR_OK) << why_.message;
+  const g4lidar_scan* scan = nullptr;
+  EXPECT_EQ(g4lidar_wait_scan(made, 10'000, &scan, &why_), G4LIDAR_OK) << why_.message;
+  options.device = raw_.c_str();
+  options.listen_only = false;
+  g4lidar_lidar* none = nullptr;
+  EXPECT_EQ(g4lidar_open_with(&options, &none, &why_), G4LIDAR_BAD_OPTION);
+  EXPECT_NE(std::string(why_.message).find("leave_dtr"), std::string::npos) << why_.message;
 }
 
 TEST_F(CModel, TheNameThatIsMeantIsStated) {

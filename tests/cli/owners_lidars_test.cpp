@@ -85,6 +85,37 @@ TEST_F(OwnersLidar, OfWhichOnlyTheDataWireIsConnected_IsRead) {
   }
 }
 
+TEST_F(OwnersLidar, ThatIsOnlyListenedTo_GetsNoCommandOfAnyVerb) {
+  const std::string source = "sim:?model=g4&fault=scanning";
+  for (const std::vector<std::string>& words :
+       std::vector<std::vector<std::string>>{{"set", source, "frequency=8"},
+                                             {"start", source},
+                                             {"stop", source},
+                                             {"restart", source}}) {
+    std::vector<std::string> more = words;
+    more.emplace_back("--listen");
+    const outcome done = run(more);
+    EXPECT_EQ(done.code, 2) << words.front() << done.err;
+    EXPECT_THAT(done.err, HasSubstr("--listen: nothing is sent")) << words.front();
+  }
+  const outcome health = run({"health", source, "--listen"});
+  EXPECT_EQ(health.code, 0) << health.err;
+  EXPECT_THAT(health.out, HasSubstr("unknown"));
+  const outcome info = run({"info", source, "--listen"});
+  EXPECT_EQ(info.code, 0) << info.err;
+  EXPECT_THAT(info.out, HasSubstr("frequency   unknown (only listened to)"));
+}
+
+TEST_F(OwnersLidar, ThatAnswersNothing_HasNotStopped) {
+  serve({"--model", "t-mini-plus", "--fault", "scanning", "--fault", "deaf"});
+  const outcome stop = run({"stop", port_});
+  EXPECT_THAT(stop.err, HasSubstr("cannot be stopped"));
+  EXPECT_THAT(stop.err, testing::Not(HasSubstr("was not scanning")));
+  const outcome set = run({"set", port_, "frequency=8"});
+  EXPECT_THAT(set.err, HasSubstr("answers nothing"));
+  EXPECT_THAT(set.err, testing::Not(HasSubstr("no such command")));
+}
+
 TEST_F(OwnersLidar, ThatWaitsForCommandsIsSilentWhereItIsOnlyListenedTo) {
   serve({"--model", "g4"});
   for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{
@@ -126,6 +157,58 @@ TEST_F(OwnersLidar, DoctorStatesTheSamplesThatItHasSeen) {
     EXPECT_THAT(done.out, Not(HasSubstr("insist")));
     EXPECT_THAT(done.out, Not(HasSubstr("wrong_baud_rate")));
   }
+}
+
+TEST_F(OwnersLidar, WhatContradictsTheModelStandsInItsRecording) {
+  const std::string walk = path("walk.mcap");
+  const std::string again = path("again.mcap");
+  struct owners_lidar {
+    std::vector<std::string> served;
+    std::vector<std::string> options;
+    std::string text;
+    std::string model;
+  };
+  const std::vector<owners_lidar> all{
+      {{"--model", "t-mini-plus-sh", "--device", "model_id=151"},
+       {},
+       "reports the number 151, that of a T-mini Plus. It is read as a T-mini Plus SH",
+       "T-mini Plus SH"},
+      {{"--model", "t-mini-plus", "--device", "model_id=153"},
+       {},
+       "153, which no known model has",
+       "T-mini Pro"},  // the usual one with such samples
+      {{"--model", "g4"}, {"--model", "g5!"}, "reports the number 5, that of a G4", "G5"},
+      {{"--model", "s2-intensity", "--device", "baud=153600"},
+       {"--model", "s2-intensity"},
+       "runs at 153600 baud",
+       "S2 with intensity"},
+      {{"--model", "t-mini-plus", "--fault", "scanning", "--fault", "deaf"},
+       {},
+       "answers no command",
+       ""}};
+  for (const owners_lidar& each : all) {
+    serve(each.served);
+    std::vector<std::string> words{"record", "-n", "8", "--force", "-o", walk, port_};
+    words.insert(words.end(), each.options.begin(), each.options.end());
+    ASSERT_EQ(run(words).code, 0) << each.text;
+    ASSERT_EQ(run({"record", walk, "--force", "-o", again}).code, 0) << each.text;
+    for (const std::string& file : {walk, again}) {
+      const outcome info = run({"info", file});
+      EXPECT_THAT(info.err, HasSubstr(each.text)) << file;
+      EXPECT_THAT(info.out, HasSubstr("model       " + each.model)) << file;
+      EXPECT_THAT(run({"info", "--json", file}).out, HasSubstr(each.text)) << file;
+    }
+    for (const char* const verb : {"scan", "decode", "replay"}) {
+      const outcome played = run({verb, walk});
+      EXPECT_EQ(played.code, 0) << played.err;
+      EXPECT_THAT(played.err, HasSubstr(each.text)) << verb;
+    }
+    const outcome examined = run({"doctor", "--json", walk});
+    EXPECT_THAT(examined.out, Not(HasSubstr("other_device")));
+    EXPECT_THAT(examined.out, HasSubstr(each.text));
+  }
+  ASSERT_EQ(run({"record", "-n", "3", "sim:", "--force", "-o", walk}).code, 0);
+  EXPECT_THAT(run({"info", "--json", walk}).out, HasSubstr(R"("contradictions":"")"));
 }
 
 TEST_F(OwnersLidar, TheUserMayInsistOnTheModel) {

@@ -34,6 +34,7 @@ const option_case baud{{"--baud", "115200"}, "pts"};
 const option_case model{{"--model", "g4"}, "ptsrb-"};
 const option_case certain{{"--model", "g4!"}, "pts"};
 const option_case listen{{"--listen"}, "pts"};
+const option_case leave{{"--leave-dtr"}, "pts"};
 const option_case all_ports{{"--all-ports"}, "p"};
 const option_case sample_rate{{"--sample-rate", "8000"}, "b"};
 const option_case counted_rate{{"--sample-rate", "8000"}, "b-"};  // of a pipe, too
@@ -50,7 +51,7 @@ struct verb_case {
 void PrintTo(const verb_case& of, std::ostream* out) { *out << of.name; }
 
 std::vector<option_case> device_options(std::vector<option_case> more = {}) {
-  more.insert(more.end(), {on_loss, ends, baud, model, certain, listen, all_ports});
+  more.insert(more.end(), {on_loss, ends, baud, model, certain, listen, leave, all_ports});
   return more;
 }
 

@@ -42,12 +42,21 @@ TEST_F(UserWords, AModelIsNamedAsOnItsLabel) {
   EXPECT_THAT(simulated.out, HasSubstr("X4"));
 }
 
-TEST_F(UserWords, AProductWithAnotherProtocolIsNotSupported) {
-  for (const std::string product : {"GS2", "T30", "coin-d4", "SDM15", "TEA"}) {
-    const std::string wanted = "'" + product + "' is not supported: it has another protocol";
+TEST_F(UserWords, AProductThatIsNotSupportedIsNamed) {
+  for (const auto& [product, why] :
+       {std::pair<std::string, std::string>("GS2", "it has another protocol"),
+        {"T30", "it has another protocol"},
+        {"SDM15", "it has another protocol, usual driver YDLidar-SDK"},
+        {"LD19", "a lidar of LDROBOT, usual driver ldlidar_stl_ros2"},
+        {"rplidar-a1", "a lidar of Slamtec, usual driver sllidar_ros2"},
+        {"OS30A", "a depth camera"},
+        {"coin-d4", "read it as t-mini-pro with --listen (listen_only)"},
+        {"HLS-LFCD2", "a lidar of Hitachi-LG, usual driver hls_lfcd_lds_driver"}}) {
+    const std::string wanted = "'" + product + "' is not supported: " + why;
     for (const std::vector<std::string>& words :
          std::vector<std::vector<std::string>>{{"decode", raw_, "--model", product},
                                                {"doctor", raw_, "--model", product},
+                                               {"decode", raw_, "--model", product + "!"},
                                                {"decode", "file:" + raw_ + "?model=" + product},
                                                {"scan", "sim:?model=" + product},
                                                {"sim", "--model", product}}) {
@@ -64,7 +73,8 @@ TEST_F(UserWords, ANameOfAnotherKindHasTheRightOne) {
        {std::pair("udp:0.0.0.0:8889", "tcp:0.0.0.0:8889"),
         std::pair("socket://h:4000", "tcp:h:4000"),
         std::pair("127.0.0.1:4000", "tcp:127.0.0.1:4000"), std::pair("ttyUSB0", "/dev/ttyUSB0"),
-        std::pair("COM3", "/dev/ttyUSB0")}) {
+        std::pair("COM3", "/dev/ttyUSB0"), std::pair("/dev/ttyusb0", "/dev/ttyUSB0"),
+        std::pair("USB0", "/dev/ttyUSB0")}) {
     const std::string wanted = std::string("did you mean ") + meant + "?";
     for (const char* const verb : {"scan", "info", "record", "set", "view", "acceptance"}) {
       std::vector<std::string> words{verb, given};

@@ -66,16 +66,54 @@ TEST(Label, OfNothing) {
   }
 }
 
-TEST(Label, OfProductsWithAnotherProtocol) {
-  for (const std::string_view label :
-       {"GS1", "GS2", "GS5", "gs-6", "SDM15", "sdm 18", "TEA", "TSA", "TSA-Pro", "TIA", "T15",
-        "t30", "R3", "coin-d4", "COIND4", "LDS-03", "YDLIDAR GS2"}) {
-    EXPECT_FALSE(other_product(label).empty()) << label;
+TEST(Label, OfProductsThatAreNotSupported) {
+  for (const std::string_view label : {"GS1",          "GS2",
+                                       "GS5",          "gs-6",
+                                       "SDM15",        "sdm 18",
+                                       "SDM15B",       "TEA",
+                                       "TSA",          "TSA-Pro",
+                                       "TIA",          "TIA-H",
+                                       "T15",          "t30",
+                                       "R3",           "coin-d4",
+                                       "COIND4",       "COIN-D4A",
+                                       "LDS-03",       "YDLIDAR GS2",
+                                       "OS30A",        "os-30a",
+                                       "HP60C",        "LD06",
+                                       "ld19",         "LD-14P",
+                                       "STL-19P",      "stl27l",
+                                       "ldlidar",      "LDROBOT LD06",
+                                       "RPLIDAR A1",   "rplidar-a1",
+                                       "RPLIDAR",      "rplidar_a2m8",
+                                       "A1M8",         "A2",
+                                       "C1",           "A3M1",
+                                       "Slamtec S2",   "sllidar",
+                                       "XV-11",        "xv11",
+                                       "Neato",        "LDS-01",
+                                       "HLS-LFCD2",    "LDS-02",
+                                       "Delta-2A",     "3irobotix",
+                                       "Camsense X1",  "Hokuyo UST-10LX",
+                                       "URG-04LX",     "SICK TiM561",
+                                       "MS200",        "Velodyne VLP-16",
+                                       "Livox Mid-360"}) {
+    EXPECT_FALSE(why_unsupported(label).empty()) << label;
     EXPECT_EQ(model_named(label), nullptr) << label;
   }
-  for (const model& row : models) EXPECT_TRUE(other_product(row.name).empty()) << row.name;
-  EXPECT_TRUE(other_product("x44").empty());
-  EXPECT_TRUE(other_product("").empty());
+  for (const model& row : models) {
+    EXPECT_TRUE(why_unsupported(row.name).empty()) << row.name;
+    EXPECT_TRUE(why_unsupported(row.word).empty()) << row.word;
+  }
+  for (const std::string_view label : {"x44", "", "ydlidar", "GS", "A", "S1", "T1"})
+    EXPECT_TRUE(why_unsupported(label).empty()) << label;
+}
+
+TEST(Label, HasTheUsualDriverOfItsMaker) {
+  for (const auto& [label, driver] :
+       {std::pair("LD19", "ldlidar_stl_ros2"), std::pair("RPLIDAR A1", "sllidar_ros2"),
+        std::pair("GS2", "YDLidar-SDK"), std::pair("SDM15", "YDLidar-SDK"),
+        std::pair("XV-11", "xv_11_driver"), std::pair("LDS-01", "hls_lfcd_lds_driver"),
+        std::pair("Delta-2B", "delta_lidar"), std::pair("Camsense X1", "camsense_driver")}) {
+    EXPECT_TRUE(why_unsupported(label).ends_with(driver)) << label;
+  }
 }
 
 TEST(Label, OfNumbers) {

@@ -13,8 +13,9 @@
 namespace g4lidar::test {
 namespace {
 
-TEST(PortWords, TheNameThatIsMeant) {
-  const std::vector<std::pair<std::string, std::string>> all{
+/// What is written, and the name that is meant.
+const std::vector<std::pair<std::string, std::string>>& meant_names() {
+  static const std::vector<std::pair<std::string, std::string>> all{
       {"ttyUSB0", "/dev/ttyUSB0"},
       {"/ttyACM1", "/dev/ttyACM1"},
       {"dev/ttyUSB0", "/dev/ttyUSB0"},
@@ -44,8 +45,55 @@ TEST(PortWords, TheNameThatIsMeant) {
       {"sim", "sim:"},
       {"sim?model=x4", "sim:?model=x4"},
       {"null", "/dev/null"},
+      // As labels, other systems and other programs write it.
+      {"TTYUSB0", "/dev/ttyUSB0"},
+      {"ttyusb1", "/dev/ttyUSB1"},
+      {"/dev/ttyusb0", "/dev/ttyUSB0"},
+      {"/Dev/TTYUSB0", "/dev/ttyUSB0"},
+      {"/dev/TTYACM0", "/dev/ttyACM0"},
+      {"/dev/USB0", "/dev/ttyUSB0"},
+      {"/dev/usb3", "/dev/ttyUSB3"},
+      {"USB0", "/dev/ttyUSB0"},
+      {"usb 0", "/dev/ttyUSB0"},
+      {"AMA0", "/dev/ttyAMA0"},
+      {"acm1", "/dev/ttyACM1"},
+      {"THS1", "/dev/ttyTHS1"},
+      {"ttys7", "/dev/ttyS7"},
+      {"Serial0", "/dev/serial0"},
+      {"ttyACM0:", "/dev/ttyACM0"},
+      {"ttyUSB0:230400", "/dev/ttyUSB0"},
+      {"/dev/ttyUSB0:115200", "/dev/ttyUSB0"},
+      {"/dev/ttyUSB0,128000", "/dev/ttyUSB0"},
+      {"ttyUSB0@230400", "/dev/ttyUSB0"},
+      {"/dev//ttyUSB5", "/dev/ttyUSB5"},
+      {R"(\dev\ttyUSB0)", "/dev/ttyUSB0"},
+      {R"("/dev/ttyUSB6")", "/dev/ttyUSB6"},
+      {" /dev/ttyUSB6 ", "/dev/ttyUSB6"},
+      {"'walk-of-nobody.mcap'", "walk-of-nobody.mcap"},
+      {"tty:USB0", "/dev/ttyUSB0"},
+      {"device:/dev/ttyUSB6", "/dev/ttyUSB6"},
+      {"port=/dev/ttyUSB6", "/dev/ttyUSB6"},
+      {"serial:///dev/ttyUSB0", "/dev/ttyUSB0"},
+      {"usb:USB0", "/dev/ttyUSB0"},
+      {"by-id/usb-Silicon_Labs", "/dev/serial/by-id/usb-Silicon_Labs"},
+      {"dev/serial/by-id/usb-Silicon_Labs", "/dev/serial/by-id/usb-Silicon_Labs"},
+      {"com3", "/dev/ttyUSB0"},
+      {"COM3:115200", "/dev/ttyUSB0"},
+      {R"(\\.\COM3)", "/dev/ttyUSB0"},
+      {"/dev/cu.usbserial-10", "/dev/ttyUSB0"},
+      {"/dev/tty.SLAB_USBtoUART", "/dev/ttyUSB0"},
+      {"tcp:/robot:4000", "tcp:robot:4000"},
+      {"tcp//robot:4000", "tcp:robot:4000"},
+      {"https://robot:4000/", "tcp:robot:4000"},
+      {"localhost", "tcp:localhost:PORT"},
+      {"robot.local", "tcp:robot.local:PORT"},
+      {"localhost:4000", "tcp:localhost:4000"},
   };
-  for (const auto& [given, meant] : all) {
+  return all;
+}
+
+TEST(PortWords, TheNameThatIsMeant) {
+  for (const auto& [given, meant] : meant_names()) {
     EXPECT_EQ(meant_by(given), meant) << given;
     const auto port = select_port(given);
     ASSERT_FALSE(port) << given;
@@ -61,9 +109,26 @@ TEST(PortWords, TheNameThatIsMeant) {
 }
 
 TEST(PortWords, OtherNamesAreLeftAlone) {
-  for (const std::string name : {"/dev/ttyUSB7", "/dev/no-such-port", "walk.mcap", "bytes/raw.bin",
-                                 "serial:2021101000070073", "usb:1-1.4", "no such file", "comet",
-                                 "udp", "a:b", "file:COM3", "1-2-3"}) {
+  for (const std::string name : {"/dev/ttyUSB7",
+                                 "/dev/no-such-port",
+                                 "walk.mcap",
+                                 "bytes/raw.bin",
+                                 "serial:2021101000070073",
+                                 "usb:1-1.4",
+                                 "no such file",
+                                 "comet",
+                                 "udp",
+                                 "a:b",
+                                 "file:COM3",
+                                 "1-2-3",
+                                 "/dev/ttyS97",
+                                 "tcp:robot:4000",
+                                 "usb",
+                                 "S2",
+                                 "USB",
+                                 "-",
+                                 R"(C:\walk.mcap)",
+                                 "/dev/serial0-of-nobody"}) {
     EXPECT_EQ(meant_by(name), "") << name;
     EXPECT_FALSE(misspelled(name)) << name;
   }

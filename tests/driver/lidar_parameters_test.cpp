@@ -76,11 +76,13 @@ class filtered {
   filtered() {
     filter_settings start;
     start.filter.in = frame::robot;
-    const std::map<std::string, std::string> words{
-        {"edges", "off"},   {"fov", "-180:180"},  {"ignore", ""},    {"near", "off"},
-        {"near_as", "nan"}, {"no_return", "inf"}, {"speckle", "off"}};
-    parameters_ =
-        std::make_unique<lidar_parameters>(shaping_options{}, start, mask{}, words, shaper_);
+    parameters_ = std::make_unique<lidar_parameters>(shaping_options{}, start, mask{}, shaper_);
+    for (const auto& [name, word] :
+         {std::pair("edges", "off"), std::pair("fov", "-180:180"), std::pair("ignore", ""),
+          std::pair("near", "off"), std::pair("near_as", "nan"), std::pair("no_return", "inf"),
+          std::pair("speckle", "off")}) {
+      parameters_->fix(name, std::string(word));
+    }
     for (int i = 0; i < 360; ++i) {
       point& made = points_.emplace_back();
       made.angle_deg = static_cast<float>(i);

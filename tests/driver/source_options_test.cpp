@@ -30,6 +30,7 @@ const std::vector<option>& of_lidars() {
       {"baud", [](auto& of) { of.baud = 115'200; }},
       {"insist_on_model", [](auto& of) { of.insist_on_model = true; }},
       {"listen_only", [](auto& of) { of.listen_only = true; }},
+      {"leave_dtr", [](auto& of) { of.leave_dtr = true; }},
       {"sample_rate", [](auto& of) { of.sample_rate = sample_rate::khz_8; }},
       {"frequency", [](auto& of) { of.frequency = scan_frequency::hz(10); }},
       {"direction", [](auto& of) { of.direction = motor_direction::clockwise; }},

@@ -254,7 +254,7 @@ TEST(ExtremeText, Parameters) {
   many_times(
       [](test::dice& random) {
         scan_shaper shaper;
-        lidar_parameters parameters({}, {}, {}, {}, shaper);
+        lidar_parameters parameters({}, {}, {}, shaper);
         for (const parameter& each : all_parameters()) {
           std::vector<named_value> wanted{{std::string(each.name), any<double>(random)}};
           use(parameters.change(nullptr, wanted).size());

@@ -4,7 +4,9 @@
 
 #include <gmock/gmock.h>
 
+#include <cmath>
 #include <cstdint>
+#include <fstream>
 #include <map>
 #include <set>
 #include <string>
@@ -125,6 +127,37 @@ TEST(Diagnostics, StateIsAWarningWhereSomethingContradictsTheModel) {
   EXPECT_EQ(values["number"], "153");
   EXPECT_EQ(values["g4lidar: state level"], "1");
   EXPECT_THAT(values["g4lidar: state warning"], HasSubstr("153, which no known model has"));
+  tool.send(SIGINT);
+}
+
+class DiagnosticsOfWorlds : public cli::scratch {};
+
+TEST_F(DiagnosticsOfWorlds, StageOfTheReturnsNamesTheDirectionsWithoutOne) {
+  const std::string world = path("world.txt");
+  std::ofstream(world) << "wall -900 900 900 900\nlidar 0 0 0\n";  // farther than any lidar sees
+  {
+    const test_domain domain;
+    diagnosis values(domain);
+    cli::program tool({"sim:?world=" + world});
+    EXPECT_TRUE(comes_true([&] { return values["diagnosis"] == "no_returns"; }));
+    EXPECT_EQ(values["g4lidar: returns level"], "1");
+    tool.send(SIGINT);
+  }
+  // 53 degrees of a wall, where the cable leaves the lidar: behind it.
+  std::ofstream(world) << "wall 2 -1 2 1\nlidar 0 0 0\n";
+  const test_domain domain;
+  diagnosis values(domain);
+  cli::program tool({"sim:?world=" + world});
+  const auto is_near = [&](const char* key, double wanted_deg) {
+    const std::string text = values[key];
+    return !text.empty() && std::abs(std::remainder(std::stod(text) - wanted_deg, 360.0)) < 4.0;
+  };
+  // After a few turns.
+  EXPECT_TRUE(comes_true([&] {
+    return is_near("nothing_from_deg", -153.4) && is_near("nothing_to_deg", 153.4);
+  })) << values["nothing_from_deg"]
+      << " to " << values["nothing_to_deg"];
+  EXPECT_EQ(values["g4lidar: returns level"], "0");
   tool.send(SIGINT);
 }
 

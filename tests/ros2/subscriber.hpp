@@ -41,8 +41,6 @@ class test_domain {
              1);
     ::setenv("ROS_DOMAIN_ID", std::to_string(number()).c_str(), 1);
     ::setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST", 1);
-    // As on a machine of ROS with Cyclone DDS, whose clients call services.
-    ::setenv("RMW_IMPLEMENTATION", "rmw_cyclonedds_cpp", 1);
     ::unsetenv("ROS_DISTRO");
     const auto wanted = dds::read_network({}, "");
     const std::string how = instead.empty() ? dds::configuration(wanted, !dds::addresses().empty())

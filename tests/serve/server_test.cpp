@@ -61,6 +61,33 @@ TEST_F(Server, StatusHasTheModelAndWhatContradicts) {
   EXPECT_THAT(known["contradictions"].get<std::string>(), HasSubstr("153, which no known model"));
 }
 
+TEST_F(Server, StatusHasTheDirectionsWithoutAReturn) {
+  // No wall is near enough; or one alone, of 53 degrees, where the cable leaves the lidar.
+  for (const std::string wall : {"wall -900 900 900 900", "wall 2 -1 2 1"}) {
+    std::ofstream(path("world.txt")) << wall << "\nlidar 0 0 0\n";
+    begin({}, "sim:?world=" + path("world.txt"));
+    ASSERT_TRUE(gets_scans(*open_page()));
+    json found;
+    EXPECT_TRUE(g4lidar::test::comes_true([&] {
+      const std::string text = raw_client(port_).get("/status.json");
+      const json status = json::parse(text.substr(text.find("\r\n\r\n") + 4));
+      for (const json& each : status["stages"]) {
+        if (each["stage"] == "returns" && each["verdict"] != "skipped") found = each;
+      }
+      return !found.is_null();
+    })) << wall;
+    const bool is_blind = wall.starts_with("wall -900");
+    EXPECT_EQ(found["verdict"], is_blind ? "warn" : "ok") << found;
+    EXPECT_EQ(found["diagnoses"].size(), is_blind ? 1U : 0U) << found;
+    if (is_blind) {
+      EXPECT_EQ(found["diagnoses"][0]["name"], "no_returns");
+    } else {
+      EXPECT_THAT(found["remark"].get<std::string>(), HasSubstr("Nothing returned in"));
+    }
+    EXPECT_EQ(end().code, 128 + SIGTERM);
+  }
+}
+
 TEST_F(Server, PageProtocol_FromHelloToASetting) {
   begin({"--allow-set"}, "sim:?serial=1111222233334444");
   const auto client = open_page();

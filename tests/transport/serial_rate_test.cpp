@@ -142,8 +142,8 @@ class Bridge : public testing::Test {
   }
 
  protected:
-  result<std::unique_ptr<transport>> open(std::uint32_t baud) {
-    return open_serial_transport(device_.path(), {.baud = baud}, calls_);
+  result<std::unique_ptr<transport>> open(std::uint32_t baud, bool leaves_dtr = false) {
+    return open_serial_transport(device_.path(), {.baud = baud, .leave_dtr = leaves_dtr}, calls_);
   }
   [[nodiscard]] const pty& device() const noexcept { return device_; }
 
@@ -265,6 +265,19 @@ TEST_F(Bridge, OpenPort_LosesItsDtrWithTheProgram) {
     EXPECT_TRUE(drops_dtr(device()));
   }
   EXPECT_FALSE(drops_dtr(device())) << "as it was";
+}
+
+TEST_F(Bridge, DtrThatIsLeftAlone_KeepsTheRuleOfTheSystem) {
+  for (const bool is_dropped : {true, false}) {
+    set_dropping(device(), is_dropped);
+    {
+      const auto port = open(230'400, true);
+      ASSERT_TRUE(port);
+      EXPECT_EQ(drops_dtr(device()), is_dropped);
+    }
+    EXPECT_EQ(drops_dtr(device()), is_dropped);
+  }
+  EXPECT_TRUE(lines.empty());
 }
 
 TEST_F(Bridge, PortWithoutDtr_IsLeftAsItWas) {

@@ -45,8 +45,9 @@ the subscribed odometry topic.)";
 constexpr const char* for_nodes_only =
     "--ros-args is for nodes of ROS, as that of the ROS package g4lidar_ros. Here __ns is "
     "--namespace, __node is --node-name, scan:= is --scan-topic (points, odom, /tf and /tf_static "
-    "likewise), a parameter is the option of its name, and a file of parameters is --config, in "
-    "TOML";
+    "likewise), the parameter source is SOURCE, a setting such as frequency is --set, another "
+    "parameter is the option of its name, --log-level is --verbose, and a file of parameters is "
+    "--config, in TOML";
 
 verb make_verb() {
   const auto options = std::make_shared<ros2_options>();

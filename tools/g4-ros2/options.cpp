@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 
 #include "cli/logger.hpp"
 #include "cli/rows.hpp"

@@ -101,7 +101,9 @@ typedef struct g4lidar_options {
   bool listen_only;
   /** `model` is right, whatever number the lidar reports. */
   bool insist_on_model;
-  uint8_t last_reserved[5]; /**< 0. */
+  /** The line DTR of the port is not set: a motor that it drives keeps its state. */
+  bool leave_dtr;
+  uint8_t last_reserved[4]; /**< 0. */
 } g4lidar_options;
 
 /** Sets the defaults; `size` is sizeof(g4lidar_options). */

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The names by which people call lidars: the words of the table in any spelling, and products that have another
-// protocol.
+// The names by which people call lidars: the words of the table in any spelling, and products that are not supported.
 #pragma once
 
 #include <array>
@@ -44,13 +43,13 @@ inline constexpr std::array<other_label, 4> other_labels{
      {"S2 with intensity", "s2-intensity"},
      {"S2 Pro with intensity", "s2-pro-intensity"}}};
 
-/// A product of the manufacturer with another protocol, and the numbers that identify it; 0: none is known.
+/// A product of the manufacturer with another protocol, and the numbers that identify it.
 struct other_product {
   std::uint8_t first;
   std::uint8_t last;
   std::string_view name;
 };
-inline constexpr std::array<other_product, 16> other_products{{{23, 23, "R3"},
+inline constexpr std::array<other_product, 12> other_products{{{23, 23, "R3"},
                                                                {51, 51, "GS1"},
                                                                {52, 52, "GS2"},
                                                                {53, 53, "GS5"},
@@ -61,24 +60,91 @@ inline constexpr std::array<other_product, 16> other_products{{{23, 23, "R3"},
                                                                {160, 160, "SDM15"},
                                                                {161, 161, "SDM18"},
                                                                {200, 200, "T15 or T30"},
-                                                               {210, 212, "TIA"},
-                                                               {0, 0, "T15"},
-                                                               {0, 0, "T30"},
-                                                               {0, 0, "COIN-D4"},
-                                                               {0, 0, "LDS-03"}}};
+                                                               {210, 212, "TIA"}}};
+
+inline constexpr std::string_view other_protocol = "it has another protocol";
+inline constexpr std::string_view line_sensor = "it has another protocol, usual driver YDLidar-SDK";
+inline constexpr std::string_view depth_camera = "a depth camera";
+inline constexpr std::string_view of_ldrobot = "a lidar of LDROBOT, usual driver ldlidar_stl_ros2";
+inline constexpr std::string_view of_slamtec = "a lidar of Slamtec, usual driver sllidar_ros2";
+inline constexpr std::string_view of_another_maker = "a lidar of another maker";
+inline constexpr std::string_view coin_d4 = "read it as t-mini-pro with --listen (listen_only)";
+
+/// A name on the label of a device that cannot be read, and why.
+struct unsupported_label {
+  std::string_view label;
+  std::string_view why;
+  bool is_begin = false;  // of the names of several: "LD19P" begins with "LD19"
+};
+inline constexpr auto unsupported_labels = std::to_array<unsupported_label>({
+    {"R3", other_protocol},
+    {"TEA", other_protocol, true},
+    {"TSA", other_protocol, true},
+    {"TIA", other_protocol, true},
+    {"T15", other_protocol},
+    {"T30", other_protocol},
+    {"GS1", line_sensor},
+    {"GS2", line_sensor, true},
+    {"GS5", line_sensor},
+    {"GS6", line_sensor},
+    {"SDM", line_sensor, true},
+    {"OS30", depth_camera, true},
+    {"HP60", depth_camera, true},
+    {"COIN-D4", coin_d4, true},
+    {"LDS-03", coin_d4},
+    {"LDROBOT", of_ldrobot, true},
+    {"LDLIDAR", of_ldrobot, true},
+    {"LD06", of_ldrobot, true},
+    {"LD14", of_ldrobot, true},
+    {"LD19", of_ldrobot, true},
+    {"STL", of_ldrobot, true},
+    {"RPLIDAR", of_slamtec, true},
+    {"SLLIDAR", of_slamtec, true},
+    {"Slamtec", of_slamtec, true},
+    {"A1", of_slamtec},
+    {"A1M", of_slamtec, true},
+    {"A2", of_slamtec},
+    {"A2M", of_slamtec, true},
+    {"A3", of_slamtec},
+    {"A3M", of_slamtec, true},
+    {"C1", of_slamtec},
+    {"C1M", of_slamtec, true},
+    {"XV-11", "a lidar of Neato, usual driver xv_11_driver", true},
+    {"Neato", "a lidar of Neato, usual driver xv_11_driver", true},
+    {"LDS-01", "a lidar of Hitachi-LG, usual driver hls_lfcd_lds_driver"},
+    {"HLS-LFCD", "a lidar of Hitachi-LG, usual driver hls_lfcd_lds_driver", true},
+    {"3irobotix", "a lidar of 3irobotix, usual driver delta_lidar", true},
+    {"Delta", "a lidar of 3irobotix, usual driver delta_lidar", true},
+    {"Camsense", "a lidar of Camsense, usual driver camsense_driver", true},
+    {"LDS-02", of_another_maker},
+    {"LD08", of_another_maker},
+    {"MS200", of_another_maker, true},
+    {"Hokuyo", of_another_maker, true},
+    {"URG", of_another_maker, true},
+    {"UST", of_another_maker, true},
+    {"SICK", of_another_maker, true},
+    {"Velodyne", of_another_maker, true},
+    {"Livox", of_another_maker, true},
+    {"Hesai", of_another_maker, true},
+    {"Ouster", of_another_maker, true},
+});
+
+/// Whether `label` is the same name as `begin`, or, with `has_more`, begins with it. *Pure.*
+[[nodiscard]] constexpr bool is_named(std::string_view label, std::string_view begin,
+                                      bool has_more) noexcept {
+  while (true) {
+    const int wanted = next_of_label(begin);
+    if (wanted < 0) return has_more || next_of_label(label) < 0;
+    if (next_of_label(label) != wanted) return false;
+  }
+}
 
 }  // namespace detail
 
 /// Whether both are the same name: "T-mini Pro", "tminipro", "YDLIDAR T_MINI_PRO". Case, blanks, hyphens, underscores
 /// and the name of the maker do not count. *Pure.*
 [[nodiscard]] constexpr bool is_same_label(std::string_view a, std::string_view b) noexcept {
-  a = detail::without_maker(a);
-  b = detail::without_maker(b);
-  while (true) {
-    const int next = detail::next_of_label(a);
-    if (next != detail::next_of_label(b)) return false;
-    if (next < 0) return true;
-  }
+  return detail::is_named(detail::without_maker(a), detail::without_maker(b), false);
 }
 
 /// Whether `label` names the model with this word in any spelling, or by another label that its devices have: "X2N" is
@@ -99,10 +165,12 @@ inline constexpr std::array<other_product, 16> other_products{{{23, 23, "R3"},
   return {};
 }
 
-/// The same by its label, in any spelling. *Pure.*
-[[nodiscard]] constexpr std::string_view other_product(std::string_view label) noexcept {
-  for (const detail::other_product& each : detail::other_products) {
-    if (is_same_label(label, each.name)) return each.name;
+/// Why a product with this label, in any spelling, is not supported: another one of the manufacturer, or a lidar of
+/// another maker, with its usual driver. "a lidar of LDROBOT, ..."; empty if none is known. Valid forever. *Pure.*
+[[nodiscard]] constexpr std::string_view why_unsupported(std::string_view label) noexcept {
+  label = detail::without_maker(label);
+  for (const detail::unsupported_label& each : detail::unsupported_labels) {
+    if (detail::is_named(label, each.label, each.is_begin)) return each.why;
   }
   return {};
 }

@@ -6,6 +6,7 @@
 
 #include "g4lidar/core/request.hpp"
 #include "g4lidar/device_information.hpp"
+#include "g4lidar/recognition.hpp"
 #include "g4lidar/settings.hpp"
 
 namespace g4lidar {
@@ -20,6 +21,9 @@ struct recorded_device {
   std::optional<constant_frequency> constant{};
   std::optional<low_power> idle{};
   std::optional<power_down_protection> protection{};
+  /// As which model the lidar was read, if something contradicts that: contradictions_of(). Without candidates. The
+  /// driver records it; a device() without it leaves it as it is.
+  std::optional<recognition> recognised{};
 };
 
 }  // namespace g4lidar

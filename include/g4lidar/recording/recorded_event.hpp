@@ -17,6 +17,7 @@ namespace g4lidar {
 
 class connector;
 struct recorded_device;
+struct recognition;
 
 /// One event between two reads of a transport. A view; the function that returns it defines its
 /// lifetime.
@@ -98,6 +99,8 @@ class G4LIDAR_API recording_hook {
   [[nodiscard]] virtual recorded_event_source* events() noexcept { return nullptr; }
   /// To be recorded: an event of the driver, after the last read and before the next one.
   virtual void event(const recorded_event& /*what*/) noexcept {}
+  /// To be recorded: something contradicts the model as which the lidar is read.
+  virtual void recognised(const recognition& /*what*/) noexcept {}
 
  protected:
   recording_hook() = default;

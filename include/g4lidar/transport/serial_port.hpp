@@ -19,6 +19,9 @@ struct serial_options {
   bool exclusive = true;  ///< Refuse a port that another program has open, and lock it.
   bool low_latency =
       true;  ///< Ask the kernel driver to deliver bytes immediately, if it supports this.
+  /// The system keeps its rule for DTR after the last close. Otherwise it lowers the line then, also after a program
+  /// that was killed.
+  bool leave_dtr = false;
 };
 
 /// Opens serial ports. The resulting transport

@@ -46,7 +46,7 @@ lidar_session::lidar_session(rclcpp_lifecycle::LifecycleNode& node, lidar_topics
       is_file_(is_file_name(options.lidar.device)),
       motion_(node, topics, options.motion, options.frame_id, options.lidar.device),
       parameters_(options.shaping, {.filter = {.in = g4lidar::frame::robot}}, mask_in(options.mask),
-                  {}, shaper_),
+                  shaper_),
       reader_(
           [this] {
             g4lidar::lidar_options made = g4lidar::usable_options(options_.lidar);

@@ -136,6 +136,7 @@ session_options node_parameters::for_session() const {
   }
   lidar.insist_on_model |= node_.get_parameter("insist_on_model").as_bool();
   lidar.listen_only = node_.get_parameter("listen_only").as_bool();
+  lidar.leave_dtr = node_.get_parameter("leave_dtr").as_bool();
   if (const auto baud = node_.get_parameter("baud").as_int(); baud > 0)
     lidar.baud = static_cast<std::uint32_t>(baud);
   if (const auto wrong = g4lidar::problem_with_source(lidar))
@@ -225,7 +226,7 @@ std::string node_parameters::refuse(const changes& wanted) {
     return std::ranges::find(touched, each.first) == touched.end();
   });
   g4lidar::scan_shaper shaper;
-  g4lidar::lidar_parameters trial({}, {}, {}, {}, shaper);
+  g4lidar::lidar_parameters trial({}, {}, {}, shaper);
   if (session_ && !values.empty()) static_cast<void>(trial.change(nullptr, filters({})));
   if (std::string wrong = trial.change(nullptr, values); !wrong.empty() || !session_) return wrong;
   if (!settings.empty()) {

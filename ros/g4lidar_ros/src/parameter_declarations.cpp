@@ -126,6 +126,8 @@ void declare_parameters(rclcpp_lifecycle::LifecycleNode& node) {
           fixed("The model is right, whatever number the lidar reports"));
   declare(node, "listen_only", value(false),
           fixed("Send not a byte: for a data wire alone, or a lidar that another computer drives"));
+  declare(node, "leave_dtr", value(false),
+          fixed("Do not set the line DTR of the port: a motor that it drives keeps its state"));
   declare(node, "baud", value(0),
           counted(fixed("Bits per second; 0: those of the model"), 10'000'000));
   declare(node, "frame_id", value("laser"), fixed("Frame of the scans"));

@@ -24,6 +24,9 @@ import support  # noqa: E402
 G4_DUMP = support.program("g4-dump", "G4_DUMP")
 DIRECTORY = tempfile.mkdtemp(prefix="g4lidar-ros-")
 RECORDING, _ = support.recordings(seconds=2)
+WORLD = os.path.join(DIRECTORY, "nothing.txt")
+with open(WORLD, "w") as text:
+    text.write("wall -900 900 900 900\nlidar 0 0 0\n")  # farther than any lidar sees
 # A G5 has samples as a G4, and another number: the ports of two lidars may have been swapped.
 NODES = {
     "swapped": {"model": "g5"},
@@ -53,7 +56,8 @@ def lidar(name, **arguments):
 def generate_test_description():
     actions = [launch_testing.actions.ReadyToTest()]
     if G4_DUMP:
-        actions = [lidar("file", source=RECORDING, listen_only="true"), *actions]
+        actions = [lidar("file", source=RECORDING, listen_only="true"),
+                   lidar("blind", source=f"sim:?world={WORLD}"), *actions]
         for name, arguments in NODES.items():
             words = [G4_DUMP, "sim", "-q", "--log", "--link", port(name), *REAL.get(name, [])]
             device = ExecuteProcess(cmd=["sh", "-c", 'exec "$@" 2>"$0"', port(name) + ".log", *words])
@@ -111,6 +115,16 @@ class TestRecognition(unittest.TestCase):
         self.assertFalse(refused.successful)
         self.assertTrue(self.watcher.change_state("/listens/g4lidar", Transition.TRANSITION_DEACTIVATE))
         self.assertEqual(commands("listens"), [])
+
+    def test_a_lidar_that_sees_nothing_is_a_warning(self):
+        messages = self.watcher.collect(DiagnosticArray, "/diagnostics")
+
+        def found():
+            return [each for message in list(messages) for each in message.status
+                    if each.name == "/blind/g4lidar: returns" and each.level != DiagnosticStatus.OK]
+        self.assertTrue(support.wait_for(found))
+        self.assertEqual(found()[-1].level, DiagnosticStatus.WARN)
+        self.assertIn("no_returns", [pair.value for pair in found()[-1].values])
 
     def test_a_recording_cannot_be_listened_to(self):
         self.assertEqual(self.watcher.state("/file/g4lidar"), State.PRIMARY_STATE_UNCONFIGURED)

@@ -202,8 +202,8 @@ std::string read_model(setup& into, std::string_view value) {
     into.model = into.device.model;
     return {};
   }
-  if (!other_product(value).empty())
-    return refused(value, "is not supported: it has another protocol");
+  if (const auto why = why_unsupported(value); !why.empty())
+    return refused(value, std::string("is not supported: ").append(why));
   std::string known;
   for (const std::string_view word : model_words()) {
     if (is_label_of(value, word)) return refused(value, "has one layout of samples only");

@@ -160,5 +160,32 @@ TEST(LiveDtr, SilentOneWayLidar_GetsAPulse) {
   }
 }
 
+// Also of a silent lidar, which gets a pulse otherwise.
+TEST(LiveDtr, LeftAlone_TheLineIsNotSet) {
+  for (const std::string_view word : {"x2", "tx8", "g4"}) {
+    for (const bool sends : {true, false}) {
+      const model& which = *model_named(word);
+      bench on(which, options_of(which),
+               {sim::make_fault(sends ? sim::fault_kind::scanning : sim::fault_kind::stall)});
+      std::string done;
+      {
+        auto lidar =
+            lidar::open(std::make_unique<line_connector>(
+                            std::make_unique<sim::virtual_connector>(on.device, on.clock), done),
+                        {.model = &which, .listen_only = true, .leave_dtr = true});
+        ASSERT_EQ(lidar.has_value(), sends) << word;
+        if (sends) {
+          ASSERT_TRUE(lidar->start());
+          ASSERT_TRUE(lidar->wait_scan(5000ms)) << word;
+          ASSERT_TRUE(lidar->stop());
+          ASSERT_TRUE(lidar->close());
+        }
+      }
+      EXPECT_EQ(done, "") << word;
+      EXPECT_TRUE(on.device.log().empty()) << word;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace g4lidar

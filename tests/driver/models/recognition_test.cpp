@@ -177,7 +177,11 @@ TEST(Recognition, ALidarThatIsListenedTo_GetsNoByte) {
     ASSERT_TRUE(lidar) << lidar.error().message();
     ASSERT_TRUE(lidar->start());
     for (int i = 0; i < 3; ++i) ASSERT_TRUE(lidar->wait_scan(5s));
-    EXPECT_EQ(lidar->set(scan_frequency::hz(8)).error(), problem::not_supported);
+    const auto set = lidar->set(scan_frequency::hz(8));
+    EXPECT_EQ(set.error(), problem::not_supported);
+    // Not for the model, which has the command.
+    EXPECT_EQ(set.error().detail() == error_detail::only_listens, is_two_way(real));
+    EXPECT_EQ(set.error().message().find("no such command") == std::string::npos, is_two_way(real));
     EXPECT_TRUE(lidar->stop());
     EXPECT_TRUE(lidar->close());
     EXPECT_TRUE(device.log().empty());
@@ -186,6 +190,7 @@ TEST(Recognition, ALidarThatIsListenedTo_GetsNoByte) {
       lidar::open("sim:?model=g4", {.listen_only = true, .frequency = scan_frequency::hz(8)});
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error(), problem::not_supported);
+  EXPECT_EQ(refused.error().detail(), error_detail::only_listens);
 }
 
 }  // namespace

@@ -17,6 +17,12 @@ void refuse_files(const common_options& options, task doing) {
   throw failure(error(doing, problem::read_only, options.source));
 }
 
+void refuse_listening(const common_options& options) {
+  if (options.expected.listens)
+    throw bad_value(
+        "--listen: nothing is sent, and this command sends something; omit one of them");
+}
+
 command_source::command_source(const common_options& options, task doing)
     : source_((refuse_files(options, doing), options)) {
   while (const auto event = lidar().next_event()) {

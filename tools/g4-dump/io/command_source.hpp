@@ -15,6 +15,8 @@ class output;
 
 /// Throws a failure if the source is a file, which cannot answer.
 void refuse_files(const common_options& options, g4lidar::task doing);
+/// The same if the user wants the device to be listened to only.
+void refuse_listening(const common_options& options);
 
 /// A device that is opened for commands, which stops it. Logs whether the device was scanning. (Discovery by serial
 /// number or among several devices has stopped it before.)

@@ -43,9 +43,10 @@ std::optional<g4lidar::health> reported_health(g4lidar::lidar& lidar) {
 exit_code health(const common_options& options) {
   output out(options.output);
   command_source source(options, task::asking);
-  const bool is_one_way = source.candidates().front()->link == g4lidar::link_kind::one_way;
-  const auto given = is_one_way ? reported_health(source.lidar())
-                                : std::optional(value_of(source.lidar().ask(requests::health())));
+  const bool is_asked =
+      source.candidates().front()->link == g4lidar::link_kind::two_way && !options.expected.listens;
+  const auto given = !is_asked ? reported_health(source.lidar())
+                               : std::optional(value_of(source.lidar().ask(requests::health())));
   report_contradictions(source.lidar().recognition());
   nlohmann::ordered_json all{
       {"source", source.lidar().name()}, {"status", nullptr}, {"error_code", nullptr}};
@@ -72,6 +73,7 @@ void wait_for_revolution(g4lidar::lidar& lidar) {
 }
 
 exit_code start(const common_options& options) {
+  refuse_listening(options);
   command_source source(options, task::starting);
   g4lidar::lidar& lidar = source.lidar();
   value_of(lidar.start());
@@ -83,6 +85,7 @@ exit_code start(const common_options& options) {
 }
 
 exit_code stop(const common_options& options) {
+  refuse_listening(options);
   command_source source(options, task::stopping);  // its constructor stops the device
   const g4lidar::model& which = *source.candidates().front();
   if (which.link == g4lidar::link_kind::one_way) {
@@ -91,6 +94,9 @@ exit_code stop(const common_options& options) {
                              is_by_line ? "it rests while no program has the port open, if the "
                                           "connection has the line DTR"
                                         : "its scan cannot be stopped"));
+  } else if (source.lidar().recognition().is_silent) {
+    logger::info(fmt::format("{}: it answers no command: its scan cannot be stopped\n",
+                             source.lidar().name()));
   } else if (!source.was_scanning()) {
     logger::info(fmt::format("{}: stopped; it was not scanning\n", source.lidar().name()));
   }
@@ -98,6 +104,7 @@ exit_code stop(const common_options& options) {
 }
 
 exit_code restart(const common_options& options) {
+  refuse_listening(options);
   command_source source(options, task::asking);
   const auto begin = clock::now();
   value_of(source.lidar().ask(requests::restart()));

@@ -158,7 +158,10 @@ int examine(const doctor_options& options) {
   how.probe_all_ports = options.expected.all_ports;
   const source_kind kind = kind_of_source(options.source);
   std::optional<recognised_model> seen;
-  how.model = kind != source_kind::simulated ? model_of(options, &seen) : options.expected.model;
+  const g4lidar::model* const named =
+      kind != source_kind::simulated ? model_of(options, &seen) : options.expected.model;
+  // A recording states its model itself, and what contradicts it.
+  how.model = kind != source_kind::recording ? named : options.expected.model;
   if (seen) report_model(*seen->which, seen->is_usual());
   if (options.duration.count() > 0) how.measuring_time = options.duration;
   how.directions = directions_of(options);
@@ -182,7 +185,7 @@ int examine(const doctor_options& options) {
   const std::vector<stage_report> stages = diagnose(options.source, how);
   const bool is_guess = seen && seen->basis != g4lidar::recognised_by::number;
   const std::string summary =
-      interrupt() == 0 ? summary_of(stages, is_guess ? nullptr : how.model) : "interrupted\n";
+      interrupt() == 0 ? summary_of(stages, is_guess ? nullptr : named) : "interrupted\n";
   if (!options.json && interrupt() == 0) out.write(summary);
   out.commit();
   if (report) {

@@ -31,7 +31,7 @@ struct device_facts {
   std::vector<maybe_answer> settings{all_settings().size()};  ///< In the order of all_settings().
   /// The model, and the others that send the same bytes; empty: not known.
   std::vector<const g4lidar::model*> candidates{};
-  std::string_view known_by{};                 ///< The model; of a device.
+  std::string_view known_by{};                 ///< The model.
   std::string contradictions{};                ///< See contradictions_of().
   std::string_view why_unknown = "no answer";  ///< For settings that a lidar can be asked for.
 };
@@ -39,8 +39,20 @@ struct device_facts {
 device_facts facts_of_recording(const std::string& source) {
   const auto reader = open_recording(path_of_source(source));
   device_facts facts{.source = source, .why_unknown = "not recorded"};
+  facts.known_by = name_of(known_by::recording);
   const auto& known = reader.device();
+  facts.candidates = {&reader.model()};
   if (!known) return facts;
+  const auto& read = known->recognised;
+  if (read) {
+    facts.candidates = {read->model};
+    facts.known_by = name_of(read->by);
+  }
+  const std::uint8_t number = known->information.model;
+  const bool is_other = !g4lidar::detail::may_report(reader.model(), number);
+  facts.contradictions = contradictions_of(read.value_or(
+      recognition{.model = &reader.model(), .number = is_other ? number : std::uint8_t{0}}));
+  report_contradictions(facts.contradictions);
   if (known->information.model != 0) facts.information = known->information;
   facts.settings = {known->sample_rate, known->frequency, known->motor,
                     known->constant,    known->idle,      known->protection};
@@ -63,10 +75,11 @@ device_facts facts_of_device(const common_options& options) {
   device_facts facts{.source = std::string(lidar.name())};
   if (!lidar.information().is_known()) listen(lidar);
   if (lidar.information().is_known()) facts.information = lidar.information();
+  if (options.expected.listens) facts.why_unknown = "only listened to";
   facts.candidates.assign(source.candidates().begin(), source.candidates().end());
   facts.known_by = name_of(lidar.recognition().by);
   facts.contradictions = contradictions_of(lidar.recognition());
-  report_contradictions(lidar.recognition());
+  report_contradictions(facts.contradictions);
   for (std::size_t i = 0; i < facts.settings.size(); ++i) {
     facts.settings[i] = read_setting(lidar, all_settings()[i]);
   }
@@ -76,9 +89,8 @@ device_facts facts_of_device(const common_options& options) {
 device_facts facts_of(const common_options& options) {
   if (kind_of_source(options.source) != source_kind::recording) return facts_of_device(options);
   refuse_zero_angle(options, "info prints what was recorded");
-  device_facts facts = facts_of_recording(options.source);
-  if (const auto* const stated = model_of(options)) facts.candidates = {stated};
-  return facts;
+  static_cast<void>(model_of(options));  // which may contradict --model
+  return facts_of_recording(options.source);
 }
 
 /// The value as text, or why it is unknown.
@@ -108,10 +120,8 @@ void write(const device_facts& facts, bool as_json, output& out) {
   all.update(json_of(facts.information));
   if (!as_json && !facts.candidates.empty()) all["model"] = words_for(facts.candidates);
   if (as_json) all["lidar"] = json_of(facts.candidates);
-  if (as_json && !facts.known_by.empty()) {
-    all["lidar"]["known_by"] = facts.known_by;
-    all["lidar"]["contradictions"] = facts.contradictions;
-  }
+  if (as_json && !facts.known_by.empty()) all["lidar"]["known_by"] = facts.known_by;
+  if (as_json) all["lidar"]["contradictions"] = facts.contradictions;
   for (std::size_t i = 0; i < facts.settings.size(); ++i) {
     ordered_json& value = all[std::string(all_settings()[i].name)];
     value = as_json ? json_of(facts.settings[i]) : ordered_json(words_for(facts, i));

@@ -103,6 +103,7 @@ void report_consequences(const std::vector<setting_change>& changes) {
 int set(const set_options& options) {
   if (options.changes.empty())
     throw bad_value("nothing to set; give NAME=VALUE such as sample_rate=9k");
+  refuse_listening(options);
   const std::vector<setting_change> changes = changes_of(options);
   output out("-");
   command_source source(options, task::configuring);

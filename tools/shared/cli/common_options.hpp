@@ -66,6 +66,7 @@ struct expected_device {
   std::optional<g4lidar::zero_angle> zero;  ///< Of --zero-angle.
   bool insists = false;                     ///< The model is certain: --model WORD!
   bool listens = false;                     ///< Not a byte is sent.
+  bool leaves_dtr = false;                  ///< DTR is not set.
   bool all_ports = false;
 };
 

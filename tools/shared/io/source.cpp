@@ -142,10 +142,11 @@ std::string alternatives_to(const g4lidar::model& found) {
 }
 
 /// The options of the library that not every source can use, and the names by which the user gives them.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 9> option_names{{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 10> option_names{{
     {"baud", "--baud"},
     {"insist_on_model", "--model MODEL!"},
     {"listen_only", "--listen"},
+    {"leave_dtr", "--leave-dtr"},
     {"probe_all_ports", "--all-ports"},
     {"reconnect", "--on-loss"},
     {"speed", "--playback-speed"},
@@ -197,8 +198,11 @@ void report_missing_zero(const g4lidar::model& which) {
 }
 
 void report_contradictions(const recognition& found) {
+  report_contradictions(contradictions_of(found));
+}
+
+void report_contradictions(const std::string& now) {
   static std::string last;
-  const std::string now = contradictions_of(found);
   if (!now.empty() && now != last) logger::info(now + "\n");
   last = now;
 }
@@ -224,6 +228,7 @@ void refuse_options_of_others(const common_options& options, const lidar_options
                       .probe_all_ports = expected.all_ports,
                       .insist_on_model = expected.insists,
                       .listen_only = expected.listens,
+                      .leave_dtr = expected.leaves_dtr,
                       .baud = expected.baud,
                       .reconnect = options.on_loss.given.has_value(),
                       .playback = how.playback,
@@ -275,6 +280,7 @@ lidar_options options_for(const common_options& options, lidar_options how) {
   how.model = named_model(options);
   if (options.expected.baud != 0) how.baud = options.expected.baud;
   how.listen_only = options.expected.listens;
+  how.leave_dtr = options.expected.leaves_dtr;
   refuse_options_of_others(options, how);
   how.zero_angle = options.expected.zero;
   how.probe_all_ports = options.expected.all_ports;

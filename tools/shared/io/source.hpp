@@ -48,6 +48,7 @@ void report_model(const recognised_model& found);
 /// Logs that the angles lack the offset of zero of this model.
 void report_missing_zero(const g4lidar::model& which);
 /// Logs what contradicts the model, if anything does, and once.
+void report_contradictions(const std::string& now);
 void report_contradictions(const g4lidar::recognition& found);
 /// The same, once the first packets have decided as which model a lidar is read whose number no model has.
 void report_contradictions(const g4lidar::lidar& from);
