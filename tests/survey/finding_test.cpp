@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a survey of bytes says about text, and that the commands which it names make the bytes again. The texts are made
+// What a survey of bytes finds in text, and that the commands which it names make the bytes again. The texts are made
 // by the programs that people use.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -115,18 +115,18 @@ TEST_F(Finding, NamesFormsOfText_AndACommandThatMakesBytesOfThem) {
   for (const text_form& each : forms) {
     if (!has(std::string(each.program)) || !has("xxd") || !has("python3")) continue;
     ASSERT_TRUE(run(std::string(each.command))) << each.command;
-    const std::string said = finding_of(read("FILE"));
-    EXPECT_THAT(said, HasSubstr("This is text")) << each.command;
-    EXPECT_THAT(said, HasSubstr(std::string(each.words))) << each.command;
+    const std::string finding = finding_of(read("FILE"));
+    EXPECT_THAT(finding, HasSubstr("This is text")) << each.command;
+    EXPECT_THAT(finding, HasSubstr(std::string(each.words))) << each.command;
     ++tried;
     if (!each.is_convertible) {
-      EXPECT_EQ(command_in(said), "") << each.command;
-      EXPECT_THAT(said, HasSubstr("Record the bytes again")) << each.command;
+      EXPECT_EQ(command_in(finding), "") << each.command;
+      EXPECT_THAT(finding, HasSubstr("Record the bytes again")) << each.command;
       continue;
     }
     std::filesystem::remove(directory_ / "NEW");
-    EXPECT_TRUE(run(command_in(said))) << said;
-    EXPECT_EQ(read("NEW"), all) << each.command << ": " << said;
+    EXPECT_TRUE(run(command_in(finding))) << finding;
+    EXPECT_EQ(read("NEW"), all) << each.command << ": " << finding;
   }
   if (tried == 0) GTEST_SKIP() << "no program that makes dumps is installed";
 }
@@ -138,9 +138,9 @@ TEST_F(Finding, ADumpWithoutEqualLinesIsLost) {
   all.resize(3'200);
   write("BYTES", all);
   ASSERT_TRUE(run("od -A x -t x1z BYTES > FILE"));
-  const std::string said = finding_of(read("FILE"));
-  EXPECT_THAT(said, HasSubstr("without equal lines"));
-  EXPECT_EQ(command_in(said), "");
+  const std::string finding = finding_of(read("FILE"));
+  EXPECT_THAT(finding, HasSubstr("without equal lines"));
+  EXPECT_EQ(command_in(finding), "");
 }
 
 TEST_F(Finding, OfLatin1HasACommandThatMakesTheBytesAgain) {
@@ -148,9 +148,9 @@ TEST_F(Finding, OfLatin1HasACommandThatMakesTheBytesAgain) {
   const byte_list all = stream_of(*model_named("x4"), sim::built_in_world(), 1, 8'192);
   write("BYTES", all);
   ASSERT_TRUE(run("iconv -f LATIN1 -t UTF-8 BYTES > FILE"));
-  const std::string said = finding_of(read("FILE"));
-  EXPECT_THAT(said, HasSubstr("Latin-1"));
-  ASSERT_TRUE(run(command_in(said))) << said;
+  const std::string finding = finding_of(read("FILE"));
+  EXPECT_THAT(finding, HasSubstr("Latin-1"));
+  ASSERT_TRUE(run(command_in(finding))) << finding;
   EXPECT_EQ(read("NEW"), all);
 }
 
@@ -159,8 +159,8 @@ TEST_F(Finding, OfOtherTextHasNoCommand) {
        {"Welcome to the console of this robot, build 2026-11-27.\nlogin: ",
         "time,x,y\n1.5,2.25,3.0\n1.6,2.3,3.1\n", "[2026-11-27 03:00] the lidar was started\n",
         "                    "}) {
-    const std::string said = finding_of({text.begin(), text.end()});
-    EXPECT_EQ(said, "This is text, not the packets of a lidar.") << text;
+    const std::string finding = finding_of({text.begin(), text.end()});
+    EXPECT_EQ(finding, "This is text, not the packets of a lidar.") << text;
   }
 }
 

@@ -218,7 +218,7 @@ TEST(OtherMakers, AnRplidarIsNamedByTheBeginOfItsScan) {
   EXPECT_EQ(recognised(after({0xA5, 0x5A, 0x54, 0x00, 0x00, 0x40, 0x82}, damaged)), "");
 }
 
-// A YDLIDAR has decimal digits there. Both say the same of their health, and of the begin of a scan.
+// A YDLIDAR has decimal digits there. Their answers about health, and at the begin of a scan, are equal.
 TEST(OtherMakers, AnRplidarIsNamedByASerialNumberThatIsNotOfDigits) {
   const byte_list health{0xA5, 0x5A, 0x03, 0x00, 0x00, 0x00, 0x06, 0x00, 0x00, 0x00};
   EXPECT_EQ(recognised(slamtec_information()), "an RPLIDAR of Slamtec");
