@@ -16,8 +16,6 @@ namespace {
 
 /// Two revolutions at the lowest frequency of lidars that answer nothing.
 constexpr std::int64_t information_ns = 700 * ms;
-/// For the first packet, at all rates, if nothing is sent.
-constexpr std::int64_t listening_ns = 4'000 * ms;
 /// For the first packets of a lidar that was started to see its samples.
 constexpr std::int64_t samples_ns = 3'000 * ms;
 

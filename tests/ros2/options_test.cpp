@@ -167,10 +167,10 @@ TEST(RosArguments, AreRefusedInALineThatNamesTheOptionsAndThePackage) {
     all.insert(all.end(), words.begin(), words.end());
     const cli::outcome refused = cli::run(all);
     EXPECT_EQ(refused.code, 2);
-    EXPECT_THAT(refused.err, AllOf(HasSubstr("--namespace"), HasSubstr("--node-name"),
-                                   HasSubstr("--scan-topic"), HasSubstr("--config"),
-                                   HasSubstr("source is SOURCE"), HasSubstr("is --set"),
-                                   HasSubstr("g4lidar_ros"), HasSubstr("g4-ros2 --help\n")));
+    EXPECT_THAT(refused.err,
+                AllOf(HasSubstr("--namespace"), HasSubstr("--node-name"), HasSubstr("--scan-topic"),
+                      HasSubstr("--config"), HasSubstr("source is SOURCE"), HasSubstr("is --set"),
+                      HasSubstr("g4lidar_ros"), HasSubstr("g4-ros2 --help\n")));
     EXPECT_EQ(std::count(refused.err.begin(), refused.err.end(), '\n'), 1);
   }
 }

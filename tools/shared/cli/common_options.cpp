@@ -314,9 +314,9 @@ option_rows device_rows(common_options& options) {
   return joined(
       in_group("Device", {choice_row("--on-loss", help.c_str(), options.on_loss.given, rules)}),
       baud_row(options), in_group("Device", {model_row(options), zero_row(options)}),
-      in_group("Device", {listen_row(options),
-                          flag_row("--leave-dtr", "Do not set the line DTR of the port",
-                                   options.expected.leaves_dtr)}),
+      in_group("Device",
+               {listen_row(options), flag_row("--leave-dtr", "Do not set the line DTR of the port",
+                                              options.expected.leaves_dtr)}),
       all_ports_row(options));
 }
 
