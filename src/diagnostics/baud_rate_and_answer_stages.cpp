@@ -46,16 +46,22 @@ void add_model(stage_report& report, const examined_lidar& lidar, std::size_t sa
   }
 }
 
+/// The rate of the line; 0: behind a network bridge, where nobody has named it.
+std::uint32_t known_baud(const examined_lidar& lidar, const diagnostic_options& options,
+                         const transport& port) {
+  return lidar.has_baud || options.baud != 0 ? port.baud() : 0;
+}
+
 }  // namespace
 
 live_run::live_run(std::unique_ptr<transport> opened, stage_log& log, bool may_pulse_dtr)
     : log_(log),
       lidar_{.which = log.options().model != nullptr ? log.options().model : &g4_model,
              .is_named = log.options().model != nullptr},
-      link_(std::move(opened), log.options().is_cancelled, *lidar_.which),
+      link_(std::move(opened), log.options().is_cancelled, *lidar_.which,
+            log.options().listen_only),
       contact_({log_, link_, replies_, lidar_, answer_}, may_pulse_dtr) {
   log.come_from(link_.port().name());
-  if (log.options().listen_only) link_.be_mute();
   const std::uint32_t baud = first_baud(log.options(), link_.port().baud());
   lidar_.has_baud = baud != 0 && link_.set_baud(baud);
 }
@@ -83,10 +89,6 @@ void live_run::run() {
   report_latency(log_, measured_, baud, link_.port().name());
 }
 
-std::uint32_t live_run::known_baud() const noexcept {
-  return lidar_.has_baud || log_.options().baud != 0 ? link_.port().baud() : 0;
-}
-
 bool live_run::end() {
   link_.ignore_cancel();
   const bool is_stopped = !talks() || !lidar_.takes_commands() || link_.stop();
@@ -105,17 +107,18 @@ void live_run::add_failure(stage_report& report) {
 bool live_run::find_device() {
   stage_report baud{.stage = diagnostic_stage::baud_rate};
   const bool is_mute = log_.options().listen_only;
-  const std::uint32_t expected_baud = known_baud();
+  const std::uint32_t expected_baud = known_baud(lidar_, log_.options(), link_.port());
   const first_contact::state found = contact_.make(baud);
   const bool goes_on = found == first_contact::state::made;
   // Without a packet or an answer at this rate it is only what the port was set to.
   const bool is_rate =
       goes_on || (found == first_contact::state::refused && !baud.measurements.empty());
+  const std::uint32_t baud_now = known_baud(lidar_, log_.options(), link_.port());
   const bool is_wrong =
       std::ranges::find(baud.diagnoses, diagnosis::wrong_baud_rate) != baud.diagnoses.end();
-  if (is_rate && known_baud() != 0) {
+  if (is_rate && baud_now != 0) {
     baud.measurements.insert(baud.measurements.begin(),
-                             make_evidence("baud", is_wrong ? expected_baud : known_baud()));
+                             make_evidence("baud", is_wrong ? expected_baud : baud_now));
   }
   if (goes_on) {
     contact_.report_scanning();
@@ -189,11 +192,12 @@ bool live_run::interview() {
     device_ = replies_.snapshot(*lidar_.which);
   }
   if (link_.is_over()) return false;
+  const std::uint32_t its_baud = known_baud(lidar_, log_.options(), link_.port());
   if (device_.information && lidar_.is_named && link_.sample_bytes() == 0 && talks() &&
-      refuses_number(log_.options(), *lidar_.which, device_.information->model, known_baud())) {
+      refuses_number(log_.options(), *lidar_.which, device_.information->model, its_baud)) {
     see_samples();
   }
-  return report_identity(log_, device_.information, *lidar_.which, known_baud(),
+  return report_identity(log_, device_.information, *lidar_.which, its_baud,
                          link_.sample_bytes()) &&
          report_health(log_, device_.condition);
 }

@@ -89,16 +89,38 @@ void event_splitter::look_for_text(bytes raw) {
 }
 
 link_monitor::link_monitor(std::unique_ptr<transport> opened, std::function<bool()> is_cancelled,
-                           const model& which)
+                           const model& which, bool is_mute)
     : transport_(std::move(opened)),
       is_cancelled_(std::move(is_cancelled)),
       which_(&which),
+      is_mute_(is_mute),
       splitter_(which.samples),
       link_(splitter_.input(), transport_.get(), {.quiet_ns = quiet_ns, .drain_ns = stop_ns},
             usual_cut_off_ns) {}
 
 // A wait that is too long is not caused by the device: this program was suspended.
 void link_monitor::listen(const std::int64_t& until_ns, const observer& to) {
+  const auto take = [&](const received& got, std::int64_t took_ns) {
+    reading what{got.count, got.arrival_ns};
+    if (took_ns > longest_read_ns + host_pause_after_ns) {
+      what.host_pause_ns = took_ns;
+      ++host_pauses_;
+      if (took_ns >= arrival_statistics::stall_ns) host_paused_ns_ = read_ns_;
+      has_backlog_ = true;
+    }
+    if (got.count == 0) {
+      has_backlog_ = false;
+      silence_ns_ += std::min(took_ns, longest_read_ns);
+      return;
+    }
+    const bytes data = bytes(buffer_).first(got.count);
+    what.silence_ns = std::exchange(silence_ns_, 0);
+    what.is_backlog = has_backlog_;
+    has_backlog_ = has_backlog_ && got.count == buffer_.size();
+    if (to.arrival) to.arrival(what);
+    survey_.received(data);
+    splitter_.received(data);
+  };
   if (read_ns_ < 0) read_ns_ = now_ns();
   for (std::int64_t begin_ns = now_ns(); !is_over(); begin_ns = read_ns_) {
     cancelled_ = is_cancelled_ && is_cancelled_();
@@ -106,35 +128,13 @@ void link_monitor::listen(const std::int64_t& until_ns, const observer& to) {
     const auto got = link_.receive(buffer_, std::min(until_ns, begin_ns + longest_read_ns));
     const std::int64_t before_ns = std::exchange(read_ns_, now_ns());
     if (got) {
-      take(*got, read_ns_ - before_ns, to);
+      take(*got, read_ns_ - before_ns);
     } else if (got.error().code() != problem::cancelled) {
       error_ = got.error();
       splitter_.input().cut();
     }
     link_.events(splitter_.sink(to));
   }
-}
-
-void link_monitor::take(const received& got, std::int64_t took_ns, const observer& to) {
-  reading what{got.count, got.arrival_ns};
-  if (took_ns > longest_read_ns + host_pause_after_ns) {
-    what.host_pause_ns = took_ns;
-    ++host_pauses_;
-    if (took_ns >= arrival_statistics::stall_ns) host_paused_ns_ = read_ns_;
-    has_backlog_ = true;
-  }
-  if (got.count == 0) {
-    has_backlog_ = false;
-    silence_ns_ += std::min(took_ns, longest_read_ns);
-    return;
-  }
-  const bytes data = bytes(buffer_).first(got.count);
-  what.silence_ns = std::exchange(silence_ns_, 0);
-  what.is_backlog = has_backlog_;
-  has_backlog_ = has_backlog_ && got.count == buffer_.size();
-  if (to.arrival) to.arrival(what);
-  survey_.received(data);
-  splitter_.received(data);
 }
 
 void link_monitor::listen_for_quiet(std::int64_t quiet, std::int64_t until_ns) {

@@ -123,9 +123,9 @@ class link_monitor {
   /// Longer than the pauses within an answer.
   static constexpr std::int64_t usual_cut_off_ns = 60 * ms;
 
-  /// `which` sends the packets; valid as long as this.
+  /// `which` sends the packets; valid as long as this. `is_mute`: not a byte is sent, whatever is called.
   link_monitor(std::unique_ptr<transport> opened, std::function<bool()> is_cancelled,
-               const model& which = g4_model);
+               const model& which = g4_model, bool is_mute = false);
 
   /// Observes until `until_ns`, which the observer may change.
   void listen(const std::int64_t& until_ns, const observer& to);
@@ -137,8 +137,6 @@ class link_monitor {
     link_.set_cut_off_after(pause_ns);
   }
 
-  /// From now on not a byte is sent, whatever is called.
-  void be_mute() noexcept { is_mute_ = true; }
   void send(command code) { static_cast<void>(write(encode(code))); }
   /// Sends a command and waits at most `patience_ns` for the reply, then shortly for a copy of it.
   [[nodiscard]] exchange ask(command code, std::int64_t patience_ns);
@@ -187,7 +185,6 @@ class link_monitor {
   bool set_baud(std::uint32_t baud);
 
  private:
-  void take(const received& got, std::int64_t took_ns, const observer& to);
   result<void> write(bytes data);
 
   std::unique_ptr<transport> transport_;
@@ -195,7 +192,7 @@ class link_monitor {
   const model* which_;
   std::optional<error> error_;
   bool cancelled_ = false;
-  bool is_mute_ = false;
+  bool is_mute_;
   bool has_backlog_ = false;
   std::int64_t read_ns_ = -1;  // the end of the last read
   event_splitter splitter_;

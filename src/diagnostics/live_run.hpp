@@ -63,8 +63,6 @@ class live_run {
   void measure_scan();
   void report_stream();
 
-  /// That of the line; 0: behind a network bridge, where nobody has named it.
-  [[nodiscard]] std::uint32_t known_baud() const noexcept;
   /// Starts it until its packets show the size of its samples.
   void see_samples();
   /// What CT bytes state about a lidar that answers nothing.

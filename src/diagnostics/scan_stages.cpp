@@ -170,10 +170,10 @@ bool live_run::start_motor() {
   }
   if (state == scan_state::runs) judge_motor(motor, measured_);
   if (!reading_.empty()) {
-    const auto is_told = [](const stage_report& each) {
+    const auto is_reported = [](const stage_report& each) {
       return !each.diagnoses.empty() && each.diagnoses.front() == diagnosis::other_number;
     };
-    if (device_.information && std::ranges::none_of(log_.stages(), is_told)) {
+    if (device_.information && std::ranges::none_of(log_.stages(), is_reported)) {
       motor.find(diagnosis::other_number);
     }
     motor.remark = reading_;

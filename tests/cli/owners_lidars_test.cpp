@@ -139,7 +139,7 @@ TEST_F(OwnersLidar, DoctorListens_AndWritesNothing) {
   EXPECT_THAT(served_->log(), Not(HasSubstr(" A5 ")));  // as each command is logged
   serve({"--model", "g4"});
   const outcome waits = run({"doctor", "--listen", "-d", "500ms", port_});
-  EXPECT_EQ(waits.code, 4) << waits.out;
+  EXPECT_EQ(waits.code, 6) << waits.out;
   EXPECT_THAT(waits.out, HasSubstr("a lidar that waits for a command is silent"));
   EXPECT_THAT(served_->log(), Not(HasSubstr(" A5 ")));
 }

@@ -188,11 +188,11 @@ inline void expect_lengths(const examined& done) {
   }
 }
 
-/// What is said of the number, and how often.
+/// What is reported about the number, and how often.
 inline void expect_number(const examined& done) {
-  int said = 0;
+  int reported = 0;
   for (const stage_report& each : done.stages) {
-    said += static_cast<int>(std::ranges::count(each.diagnoses, diagnosis::other_number));
+    reported += static_cast<int>(std::ranges::count(each.diagnoses, diagnosis::other_number));
     for (const diagnosis what : each.diagnoses) {
       const bool is_insisting = each.explain(what).advice.find("insist") != std::string_view::npos;
       EXPECT_TRUE(!is_insisting || each.stage == diagnostic_stage::identity) << name_of(each.stage);
@@ -201,7 +201,7 @@ inline void expect_number(const examined& done) {
       }
     }
   }
-  EXPECT_LE(said, 1);
+  EXPECT_LE(reported, 1);
 }
 
 inline void expect_agreement(const examined& done, const model& real, bool is_network) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Lidars that are not as their row of the table says: their evidence and their verdicts agree, too.
+// Lidars that differ from their row of the table: their evidence and their verdicts agree, too.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -112,8 +112,8 @@ const std::vector<odd_device> odd_devices{
 INSTANTIATE_TEST_SUITE_P(Of, OddEvidence, ::testing::ValuesIn(odd_devices),
                          [](const auto& of) { return std::string(of.param.name); });
 
-// Only the number is unknown, and that is what is said, with the request to report it.
-TEST(OddNumber, ThatNoModelHas_IsAllThatIsSaid) {
+// Only the number is unknown, and that is what is reported, with the request to report it.
+TEST(OddNumber, ThatNoModelHas_IsAllThatIsReported) {
   for (const char* const word : {"g4", "t-mini-plus", "t-mini-plus-sh", "tg15", "g2"}) {
     const examined done = examine_odd({word, word, unknown}, {});
     EXPECT_EQ(done.diagnoses(), "other_number") << word << done;

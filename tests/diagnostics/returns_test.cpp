@@ -116,7 +116,7 @@ struct blind_place {
   int count;  ///< Of sectors without a return.
 };
 
-// What is to be copied is the option of the same frame: with it nothing is said any more. Of sectors in each direction, that
+// What is to be copied is the option of the same frame: with it nothing is reported any more. Of sectors in each direction, that
 // cross 0, and of all but a narrow one.
 TEST(Returns, TheLineToCopy_LeavesTheSectorOut) {
   for (const blind_place& place :
@@ -147,7 +147,7 @@ TEST(Returns, TheLineToCopy_LeavesTheSectorOut) {
         how.directions.ignored_sectors = ignored;
         EXPECT_THAT(examine_in(scene, options, how).at(diagnostic_stage::returns).remark, IsEmpty())
             << word << place.walls << remark;
-        // A half of it: only the rest is said.
+        // A half of it: only the rest is reported.
         if (place.count != 1) continue;
         const int width = (found[0].second - found[0].first + 360) % 360;
         if (width > 300) continue;
