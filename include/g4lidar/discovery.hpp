@@ -148,6 +148,7 @@ struct find_options {
   /// true for, and not to those that a process has open, as far as this user sees it.
   bool probe_all_ports = false;
   std::uint32_t baud = 0;                         ///< 0: all that lidars have.
+  bool listen_only = false;                       ///< As search_options::listen_only.
   std::chrono::milliseconds probe_timeout{4000};  ///< For each port.
 };
 

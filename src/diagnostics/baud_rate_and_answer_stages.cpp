@@ -122,8 +122,10 @@ bool live_run::find_device() {
   }
   if (goes_on) {
     contact_.report_scanning();
-    const bool has_number = replies_.snapshot(*lidar_.which).information.has_value();
-    if (has_number || lidar_.is_named || !lidar_.candidates.empty()) {
+    const auto who = replies_.snapshot(*lidar_.which).information;
+    const auto has_number = [&](const model& row) { return row.has_number(who->model); };
+    const bool is_unknown = who && !lidar_.was_scanning && std::ranges::none_of(models, has_number);
+    if (lidar_.is_named || (!is_unknown && (who || !lidar_.candidates.empty()))) {
       add_model(baud, lidar_, link_.sample_bytes());
     }
     if (lidar_.has_baud) {

@@ -19,7 +19,7 @@ result<recognised_lidar> search_at(const port_info& port, const find_options& op
   if (!opened) return tl::unexpected(opened.error());
   transport& to_device = **opened;
   return search(to_device, to_device.now_ns() + limited_ns(options.probe_timeout),
-                {.baud = options.baud});
+                {.baud = options.baud, .listen_only = options.listen_only});
 }
 
 /// The ports that the library may write to: only this function decides that. `others` gets the rest.

@@ -91,6 +91,7 @@ result<std::unique_ptr<connector>> system_connector::find(std::string_view devic
   const bool has_one_rate = known.baud != 0 || (named != nullptr && named->bauds[1] == 0);
   std::unique_ptr<system_connector> made(new system_connector(device, first_baud, named));
   made->probes_all_ports_ = probes_all_ports;
+  made->only_listens_ = known.listen_only;
   made->leaves_dtr_ = known.leave_dtr;
   if (named != nullptr && has_one_rate && !always) return made;
   made->is_searched_ = named == nullptr;
@@ -153,6 +154,7 @@ result<std::unique_ptr<transport>> system_connector::open_transport() {
 result<std::unique_ptr<transport>> system_connector::first_connect() {
   find_options how;
   how.probe_all_ports = probes_all_ports_;
+  how.listen_only = only_listens_;
   how.baud = named_baud_;
   const auto port = select_port(device_, how);
   if (!port) return tl::unexpected(port.error());

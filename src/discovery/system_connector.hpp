@@ -84,6 +84,7 @@ class system_connector final : public connector {
   bool is_searched_ = false;  // the model
   recognition found_;
   bool probes_all_ports_ = false;
+  bool only_listens_ = false;
   bool leaves_dtr_ = false;
   const model* named_;                                          // or found
   std::vector<const model*> candidates_;                        // found
