@@ -244,10 +244,11 @@ std::string why_no_packet(const stream_counts& counts, std::uint64_t bytes,
   const std::string text =
       fmt::format("no point packet in the {} of {}", counted(bytes, "byte"), title);
   if (const std::string known = g4lidar::what_is(beginning); !known.empty()) {
-    return fmt::format(
-        "{}. {} Give raw bytes from the lidar's port, or use g4-dump convert for csv "
-        "and jsonl.",
-        text, known);
+    const bool is_plain = known.find("not the packets") != std::string::npos;
+    return fmt::format("{}. {}{}", text, known,
+                       is_plain ? " Give raw bytes from the lidar's port, or use g4-dump convert "
+                                  "for csv and jsonl."
+                                : "");
   }
   if (found == diagnosis::unknown_bytes) {
     return fmt::format("{}. {} Give raw bytes from the lidar's port.", text, baud_question());
