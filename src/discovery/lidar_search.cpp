@@ -151,9 +151,7 @@ lidar_search::found lidar_search::visit(std::uint32_t baud, std::int64_t listen_
   if (!is_decided()) heard_.finish();
   note_other();
   if (const other_maker* const other = heard_.maker()) {
-    std::string subject = std::string(port_.name()).append(", ").append(other->product);
-    if (!other->driver.empty())
-      subject.append(" (its usual driver is ").append(other->driver).append(")");
+    const std::string subject = std::string(port_.name()).append(", ").append(with_driver(*other));
     return failure(task::asking, problem::other_device, subject, 0, error_detail::other_maker);
   }
   if (heard_.count() >= stream_bytes) ++sending_;
