@@ -178,7 +178,7 @@ int examine(const doctor_options& options) {
     if (what == diagnostic_activity::spinning_up) {
       out.write("spinning up: the lidar has started and sends nothing yet\n");
     } else if (what == diagnostic_activity::searching) {
-      out.write("searching: nothing is known at the first baud rate; all are tried\n");
+      out.write("searching: which lidar is there, and at which baud rate\n");
     }
     out.flush();
   };
