@@ -125,13 +125,13 @@ struct search_options {
 /// Finds out which lidar is attached to an open port, and at which rate it sends. Listens, and where it is
 /// silent asks for the device information: two bytes that change nothing. Only a stream of packets that a
 /// two-way lidar may send is stopped. Leaves a two-way lidar idle, and the port at the rate that was
-/// found. Takes about 0.1 s with an idle G4, and at most 3 s with another lidar; where nothing answers or
+/// found. Takes about 0.1 s with an idle G4, at most 3 s with another lidar, and 4 s at a rate that no model has; where nothing answers or
 /// sends, as long as the deadline allows. Returns by the deadline, in the clock of the transport's now_ns().
 /// *Allocates.*
 ///
 /// Fails with silence, garbage (bytes arrived, but no packet and no answer), other_device (a product that is
 /// not supported, or packets that cannot be those of the named model; the subject names them), or like the transport. The subject of silence and
-/// garbage lists the rates, and that of garbage states how many bytes arrived and how they begin.
+/// garbage has the rates, and that of garbage states how many bytes arrived and how they begin.
 [[nodiscard]] G4LIDAR_API result<recognised_lidar> search(transport& port, std::int64_t deadline_ns,
                                                           const search_options& options = {});
 

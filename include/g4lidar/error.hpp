@@ -91,7 +91,9 @@ enum class error_detail : std::uint8_t {
   not_passed,  ///< permission: not by the mode of the port: a container or a sandbox may not use the device.
   other_bridges,  ///< no_port: there are ports that were not looked at, because they have another USB bridge.
   only_listens,  ///< not_supported: the lidar is only listened to (lidar_options::listen_only), or answers nothing.
+  known_bytes,  ///< garbage: text, an echo, or bytes that were changed on their way; the subject has what to do.
 };
+inline constexpr error_detail last_error_detail = error_detail::known_bytes;
 
 /// One error. Trivially copyable, never allocates.
 class G4LIDAR_API error {

@@ -57,8 +57,8 @@ class G4LIDAR_API lidar {
   /// device that is scanning is stopped first. For at most options.device_wait it waits, and begins again, until
   /// a lidar answers or options.is_cancelled() ends it; the times below are those of an attempt. Takes
   /// about 60 ms with a healthy device, and at most 3 s with one fault; if many bytes are damaged, at
-  /// most 15 s. A model that was named and is silent at its baud rate, at a port, is then searched at the other rates: 5 s
-  /// more. If ports are queried first (see select_port()), each of them adds at most 4 s.
+  /// most 15 s. A two-way model that was named and is silent at its only baud rate, at a port, is then searched at the
+  /// other rates: 5 s more. If ports are queried first (see select_port()), each of them adds at most 4 s.
   /// Errors: all of docs/errors.md except those of a running scan.
   [[nodiscard]] static result<lidar> open(const lidar_options& options = {});
   /// The same by name, which takes the place of lidar_options::device.

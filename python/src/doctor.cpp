@@ -162,7 +162,7 @@ void bind_doctor(nb::module_& module) {
       "Examines a lidar, its connection and its port; or a file. `device` as in open(). "
       "Measures the running scan for "
       "`measuring_time` seconds; takes about 3 s more with a healthy lidar, 8 s if it has to be "
-      "searched. Sends queries, one start, and stops; changes no setting. `baud`: bits per "
+      "searched. Sends queries, starts and stops; changes no setting. `baud`: bits per "
       "second (0: as found). `model`: the one that is expected, 'x4'; None: the one that the "
       "device or the file shows. `listen_only`: not a byte is sent; what needs answers is skipped. "
       "Sectors without a return are given in the frame 'robot'. `on_stage` is called with each "

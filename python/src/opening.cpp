@@ -219,7 +219,7 @@ void bind_discovery(nb::module_& module) {
         return ask(std::move(ports));
       },
       nb::kw_only(), "probe_all_ports"_a = false,
-      "Every lidar that answers or sends, with its port, ordered by path. Takes at most 3 s a "
+      "Every lidar that answers or sends, with its port, ordered by path. Takes at most 4 s a "
       "port. Writes "
       "only to ports with the "
       "USB bridge of a G4, unless `probe_all_ports` is set.");

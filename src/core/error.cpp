@@ -201,8 +201,10 @@ constexpr std::array<detail_words, 24> all_details{{
     {"no command is sent to this lidar, because it is only listened to or answers nothing",
      "Omit the setting or the request, or open the lidar without listening only (--listen; in a "
      "program the option listen_only). If it answers nothing, check the wire to its Rx pin."},
+    {"these are no packets as a lidar sends them",
+     "Do what the sentence before this one asks for, or name the port of the lidar."},
 }};
-static_assert(all_details.size() == static_cast<std::size_t>(error_detail::only_listens));
+static_assert(all_details.size() == static_cast<std::size_t>(last_error_detail));
 
 constexpr bool in_order() {
   for (std::size_t i = 0; i < all_words.size(); ++i) {

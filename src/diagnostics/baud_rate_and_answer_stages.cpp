@@ -92,7 +92,8 @@ void live_run::run() {
 bool live_run::end() {
   link_.ignore_cancel();
   const bool is_stopped = !talks() || !lidar_.takes_commands() || link_.stop();
-  if (lidar_.is_driven_by_dtr()) static_cast<void>(link_.port().set_dtr(false));
+  const bool sets_dtr = lidar_.is_driven_by_dtr() && !log_.options().listen_only;
+  if (sets_dtr) static_cast<void>(link_.port().set_dtr(false));
   return is_stopped;
 }
 

@@ -61,11 +61,11 @@ result<port_info> select_silently(std::string_view source) {
     return failure(task::finding, problem::bad_option,
                    std::string(source) + ", which is a question, and nothing is to be sent");
   }
-  if (!source.empty()) return select_port(source);
+  if (!source.empty()) return select_port(source, {.listen_only = true});
   auto ports = list_ports();
   if (!ports) return tl::unexpected(ports.error());
   std::erase_if(*ports, std::not_fn(is_g4_bridge));
-  if (ports->empty()) return select_port(source);
+  if (ports->empty()) return select_port(source, {.listen_only = true});
   if (ports->size() == 1) return ports->front();
   std::string paths;
   for (const port_info& each : *ports) paths.append(paths.empty() ? "" : ", ").append(each.path);

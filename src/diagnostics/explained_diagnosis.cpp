@@ -31,6 +31,9 @@ constexpr std::string_view remote_answer_advice =
 
 // No cable, no ground, no reflection, no USB bridge: nobody here can know what is behind the network.
 constexpr std::array of_network{
+    other_words{no_lidar, "",
+                "If it is a lidar, use its own driver. Otherwise check which device is attached to "
+                "the bridge, and whether the bridge echoes."},
     other_words{
         unknown_bytes, "",
         "Set the bridge to the baud rate of the lidar. If a model or a baud rate was named, "
@@ -105,6 +108,10 @@ constexpr std::string_view examine_advice =
 
 // Nothing that can be tried at this computer changes a file.
 constexpr std::array of_file{
+    other_words{
+        no_lidar, "",
+        "If it is a lidar, use its own driver. Otherwise examine the port of the lidar with "
+        "g4-dump doctor."},
     other_words{
         unknown_bytes,
         "The file contains bytes of no known kind: of another device, at a wrong baud rate, "

@@ -212,7 +212,7 @@ class file_run {
     judge_stream(stream, measured_, seconds_);
     log_.report(std::move(stream));
     report_rate(log_, measured_, device_, model_);
-    report_loss(log_, measured_, model_, &survey_);
+    report_loss(log_, measured_, model_, &survey_, seconds_);
     report_returns(log_, measured_, device_, model_, log_.options().directions);
     log_.skip(diagnostic_stage::usb_latency,
               "The reader of a file or a recording groups bytes itself.");

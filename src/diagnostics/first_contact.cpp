@@ -122,10 +122,7 @@ bool first_contact::recognise(const exchange& first) {
     return view ? view->as_device_info() : std::nullopt;
   };
   const auto once = stated(first.reply);
-  const auto is_its = [&](const device_information& who) {
-    return who.model == lidar.which->ids[0] || who.model == lidar.which->ids[1];
-  };
-  if (!once || is_its(*once)) {
+  if (!once || lidar.which->has_number(once->model)) {
     of_.link.read_as(*lidar.which);
     return true;
   }

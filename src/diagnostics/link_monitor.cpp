@@ -252,7 +252,8 @@ result<recognised_lidar> link_monitor::search(const search_options& known, std::
                  found.error() == problem::end_of_input || found.error() == problem::interference);
   if (is_lost) error_ = found.error();
   read_as(*which_);
-  if (found && found->was_scanning) sample_bytes_ = sample_size(found->model->samples.layout);
+  if (found && found->was_scanning)
+    sample_bytes_ = sample_size(found->candidates.front()->samples.layout);
   return found;
 }
 

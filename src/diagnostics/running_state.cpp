@@ -49,6 +49,7 @@ void running_state::add(const lidar_event& what) {
     case lost:
       if (is_device_ || what.reason != problem::end_of_input) {
         lost_ = g4lidar::diagnosis_of(what.reason);
+        if (lost_ == diagnosis::stalls) stall_ns_ = 0;  // this one
       }
       break;
     case reconnected:
@@ -107,7 +108,7 @@ running_state::copy running_state::take_copy() const {
             name_,
             is_device_,
             lost_case_,
-            lost_ == diagnosis::stalls ? detail::saturating_sub(now_ns_, heard_ns_) : stall_ns_};
+            lost_ == diagnosis::stalls ? std::max(stall_ns_, silence_ns()) : stall_ns_};
   if (lost_ && !found_.has(*lost_, detail::saturating_sub(now_ns_, window_ns_)))
     made.found.push_back(*lost_);
   if (!name_.empty()) made.port.add("address", name_);

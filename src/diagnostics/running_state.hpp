@@ -85,6 +85,7 @@ class running_state {
     now_ns_ = now_ns;
     // A port that gives bytes is there, also where no scan runs.
     if (lost_ && stage_of(*lost_) == diagnostic_stage::port) back();
+    if (lost_ == diagnosis::stalls) stall_ns_ = std::max(stall_ns_, silence_ns());
     heard_ns_ = now_ns;
     scan_.received(what, data);
     follow_scan();
@@ -121,6 +122,10 @@ class running_state {
     lost_.reset();
     why_lost_.clear();
     lost_case_ = error_detail::usual;
+  }
+  /// Since the last bytes.
+  [[nodiscard]] std::int64_t silence_ns() const noexcept {
+    return detail::saturating_sub(now_ns_, heard_ns_);
   }
   void follow_scan() {
     if (scan_.take_reboot()) found_.add(diagnosis::reboots, now_ns_);

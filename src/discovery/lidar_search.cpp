@@ -5,6 +5,7 @@
 #include <iterator>
 #include <utility>
 
+#include "core/number_text.hpp"
 #include "g4lidar/core/request.hpp"
 #include "inquiry.hpp"
 
@@ -32,10 +33,20 @@ constexpr std::size_t hopeless_bytes = 340;
 constexpr std::array<std::uint32_t, 10> asking_rates{230'400, 128'000, 115'200, 153'600, 512'000,
                                                      150'000, 214'285, 256'000, 460'800, 921'600};
 
+/// "230400, 128000", or where these are many "10 rates from 115200 to 921600".
+std::string rates_text(const std::vector<std::uint32_t>& rates) {
+  constexpr std::size_t few = 5;
+  if (rates.size() <= few) return list_of(rates, [](auto baud) { return std::to_string(baud); });
+  const auto [least, most] = std::ranges::minmax(rates);
+  return std::to_string(rates.size()) + " rates from " + std::to_string(least) + " to " +
+         std::to_string(most);
+}
+
 }  // namespace
 
 lidar_search::lidar_search(transport& port, const search_options& options, search_observer observer)
     : port_(port), options_(options), observer_(std::move(observer)) {
+  if (options.leave_dtr) options_.may_pulse_dtr = false;
   const auto add = [this](std::uint32_t baud) {
     if (baud != 0 && std::ranges::find(rates_, baud) == rates_.end()) rates_.push_back(baud);
   };
@@ -220,17 +231,14 @@ tl::unexpected<error> lidar_search::not_found() const {
   if (options_.model != nullptr) subject.append(", ").append(options_.model->name);
   if (options_.listen_only) subject.append(", only listened to");
   if (other_) {
-    return failure(task::asking, problem::garbage, subject.append(": ").append(other_->finding()));
+    subject.append(": ").append(other_->finding());
+    subject.pop_back();  // its full stop
+    return failure(task::asking, problem::garbage, subject, 0, error_detail::known_bytes);
   }
   const unrecognised_bytes& all = heard_.all();
   subject.append(all.text());
   if (tried_.size() > 1 || options_.baud != 0) {
-    std::string_view before = all.count() > 0 ? ", at " : " at ";
-    for (const std::uint32_t baud : tried_) {
-      subject.append(before).append(std::to_string(baud));
-      before = ", ";
-    }
-    subject.append(" baud");
+    subject.append(all.count() > 0 ? ", at " : " at ").append(rates_text(tried_)).append(" baud");
   }
   if (all.count() > 0) return failure(task::asking, problem::garbage, subject);
   const auto why = options_.model == nullptr ? error_detail::searched : error_detail::usual;

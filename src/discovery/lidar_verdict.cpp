@@ -48,8 +48,7 @@ recognised_lidar lidar_search::made(std::vector<const model*> candidates,
                                        : known_by::samples;
   lidar.is_silent = !options_.listen_only && of.answers == presence::no &&
                     lidar.model->link == link_kind::two_way;
-  const stream_change change = other_ ? other_->change() : heard_.change();
-  lidar.speaks_telnet = change == stream_change::telnet;
+  lidar.speaks_telnet = heard_.change() == stream_change::telnet;
   if (device_) {
     lidar.device = *device_;
   } else if (const auto stated = heard_.layout().information()) {

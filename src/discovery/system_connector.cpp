@@ -107,7 +107,7 @@ result<void> system_connector::search_first(search_options known) {
     return {};
   }
   transport& port = **opened;
-  known.may_pulse_dtr = !known.leave_dtr && (named_ != nullptr || names_path(device_));
+  known.may_pulse_dtr = (named_ != nullptr || names_path(device_));
   auto lidar = search(port, port.now_ns() + opening_search_ns, known);
   if (!lidar) {
     const error why = with_port_conflict(lidar.error(), port);

@@ -39,9 +39,9 @@ class kept_recognition {
     if (number != 0) what_.number = number;
     if (baud != 0) what_.baud = baud;
   }
-  /// The search may have seen it before.
-  void set_bridge(bool speaks_telnet) noexcept {
-    what_.speaks_telnet = what_.speaks_telnet || speaks_telnet;
+  /// What its connection shows. That of the search has shown it before: it is not `again` connected.
+  void set_bridge(bool speaks_telnet, bool again) noexcept {
+    what_.speaks_telnet = speaks_telnet || (what_.speaks_telnet && !again);
   }
   /// Its samples have another size than those of its number: the model is one that has, at this rate. Null: there is
   /// none. *Allocates.*

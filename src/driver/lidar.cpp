@@ -67,9 +67,14 @@ bool waited(const lidar_options& options) {
 bool may_be_at_another_rate(const error& why, const lidar_options& options) {
   if (kind_of_source(options.device) != source_kind::device) return false;
   if (why == problem::does_not_stop) return true;
+  if (options.baud != 0) return false;
+  if (why == problem::garbage) return true;
+  // A lidar that sends would have been heard; with several rates it was searched before.
   const bool is_bridge = path_of_source(options.device).starts_with(tcp_prefix);
-  const bool is_silent = why == problem::silence && why.detail() != error_detail::searched;
-  return options.baud == 0 && (why == problem::garbage || (is_silent && !is_bridge));
+  const model* const stated = model_in_source(options.device).value_or(nullptr);
+  const model* const named = stated != nullptr ? stated : options.model;
+  const bool waits = named != nullptr && named->link == link_kind::two_way && named->bauds[1] == 0;
+  return why == problem::silence && waits && !options.listen_only && !is_bridge;
 }
 
 }  // namespace

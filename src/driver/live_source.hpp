@@ -67,8 +67,7 @@ class live_source : public scan_source {
 
   /// The device has identified itself.
   void become_recognised() noexcept {
-    is_recognised_ = true;
-    recognised_.set_bridge(stream_.speaks_telnet());
+    recognised_.set_bridge(stream_.speaks_telnet(), std::exchange(is_recognised_, true));
   }
 
   lidar_options options_;

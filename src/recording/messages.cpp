@@ -236,6 +236,7 @@ word_map words_of(const recorded_device& device) {
     words.emplace_back("number", std::to_string(read->number));
     words.emplace_back("baud", std::to_string(read->baud));
     words.emplace_back("is_silent", read->is_silent ? "yes" : "no");
+    if (read->speaks_telnet) words.emplace_back("speaks_telnet", "yes");
   }
   if (device.frequency) words.emplace_back("frequency_chz", std::to_string(device.frequency->chz));
   if (device.sample_rate) words.emplace_back("sample_rate", rate_text(*device.sample_rate));
@@ -270,6 +271,7 @@ recorded_device device_of(field_reader& map) {
     if (name == "number") read.number = number_in<std::uint8_t>(value).value_or(0);
     if (name == "baud") read.baud = number_in<std::uint32_t>(value).value_or(0);
     if (name == "is_silent") read.is_silent = value == "yes";
+    if (name == "speaks_telnet") read.speaks_telnet = value == "yes";
   });
   if (read.model != nullptr) device.recognised = read;
   return device;

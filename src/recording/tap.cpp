@@ -118,7 +118,8 @@ class recorded_connector final : public forwarding_connector,
     if (inner_hook_ != nullptr) inner_hook_->recognised(what);
     const bool is_same = recognised_ && recognised_->model == what.model &&
                          recognised_->number == what.number && recognised_->baud == what.baud &&
-                         recognised_->is_silent == what.is_silent;
+                         recognised_->is_silent == what.is_silent &&
+                         recognised_->speaks_telnet == what.speaks_telnet;
     if (is_same) return;  // after a reconnect
     recognised_ = what;
     recognised_->candidates = {};  // which are valid as long as the lidar

@@ -20,6 +20,11 @@ enum class echo_kind : std::uint8_t {
   console,    ///< Text arrives, too: a program that waits for words echoes them.
 };
 
+/// Whether a console sends this beside text: a bell, a backspace, the begin of a colour.
+[[nodiscard]] constexpr bool is_of_terminal(std::uint8_t byte) noexcept {
+  return byte == 0x07 || byte == 0x08 || byte == 0x1B;
+}
+
 /// *Single thread, never allocates.*
 class echo_signs {
  public:
@@ -31,18 +36,28 @@ class echo_signs {
   void received(bytes data) noexcept {
     for (const std::uint8_t byte : data) {
       if (is_echo(byte)) {
-        ++echoed_;
+        ++now_.echoed;
       } else {
-        ++(is_of_text(byte) ? text_ : others_);
+        ++(is_of_text(byte) || is_of_terminal(byte) ? now_.text : others_);
       }
       last_ = byte;
     }
   }
 
+  /// Bytes of another baud rate follow. A rate at which other bytes came, too, shows nothing: they may have been garbled.
+  void tune() noexcept {
+    if (others_ == 0) {
+      earlier_.echoed += now_.echoed;
+      earlier_.text += now_.text;
+    }
+    now_ = {};
+    others_ = size_ = 0;
+  }
+
   [[nodiscard]] echo_kind kind() const noexcept {
     constexpr std::uint64_t two_commands = 4;
-    if (echoed_ < two_commands || others_ > 0) return echo_kind::none;
-    return text_ == 0 ? echo_kind::loop_back : echo_kind::console;
+    if (earlier_.echoed + now_.echoed < two_commands || others_ > 0) return echo_kind::none;
+    return earlier_.text + now_.text == 0 ? echo_kind::loop_back : echo_kind::console;
   }
 
  private:
@@ -62,9 +77,13 @@ class echo_signs {
   std::array<std::uint8_t, 64> awaited_{};
   std::size_t size_ = 0;
   std::uint8_t last_ = 0;
-  std::uint64_t echoed_ = 0;
-  std::uint64_t text_ = 0;
-  std::uint64_t others_ = 0;
+  struct counts {
+    std::uint64_t echoed = 0;
+    std::uint64_t text = 0;
+  };
+  counts earlier_;  // at other rates
+  counts now_;
+  std::size_t others_ = 0;
 };
 
 }  // namespace g4lidar

@@ -16,7 +16,7 @@ std::string_view words_for(text_kind what) noexcept {
       return "This is text, the dump of bytes by xxd: `xxd -r FILE NEW` makes bytes of it.";
     case text_kind::byte_dump:
       return "This is text, the dump of bytes by hexdump -C or od: "
-             "`sed -E 's/^[0-9A-Fa-f]{6,}//; s/[|>].*//' FILE | xxd -r -p > NEW` makes bytes of "
+             "`sed -E 's/^[0-9A-Fa-f]{4,}//; s/[|>].*//' FILE | xxd -r -p > NEW` makes bytes of "
              "it.";
     case text_kind::other_dump:
       return "This is text, the dump of bytes in words, by hexdump or od.";

@@ -57,6 +57,7 @@ class stream_survey {
     part();
     text_ = {};
     change_ = {};
+    echo_.tune();
   }
 
   /// Packets of which layout; since part().

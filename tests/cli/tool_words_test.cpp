@@ -22,7 +22,7 @@ std::vector<std::string> all_advice() {
     all.push_back(
         g4lidar::error(g4lidar::task::reading, static_cast<g4lidar::problem>(i)).message());
   }
-  for (auto i = 0; i <= static_cast<int>(g4lidar::error_detail::only_listens); ++i) {
+  for (auto i = 0; i <= static_cast<int>(g4lidar::last_error_detail); ++i) {
     all.push_back(g4lidar::error(g4lidar::task::opening, g4lidar::problem::bad_option, {}, 0,
                                  static_cast<g4lidar::error_detail>(i))
                       .message());

@@ -99,7 +99,7 @@ TEST(Explained, OfAFile_AdvisesNothingAtAPort) {
 
 TEST(Explained, HasNameAndSeverityOfTheDiagnosis) {
   for (const byte_path by : {byte_path::line, byte_path::network, byte_path::file}) {
-    for (int i = 0; i <= static_cast<int>(error_detail::other_bridges); ++i) {
+    for (int i = 0; i <= static_cast<int>(last_error_detail); ++i) {
       each_explained(by, static_cast<error_detail>(i),
                      [](const stage_report& report, diagnosis what) {
                        const diagnosis_info info = report.explain(what);

@@ -158,7 +158,7 @@ TEST(Text, OfAWordForAModel_IsShort) {
 
 /// A message of the C interface has 255 characters for the cause and for the advice.
 TEST(Text, OfEachDetail_FitsIntoTheCInterface) {
-  for (auto detail = error_detail::usual; detail <= error_detail::only_listens;
+  for (auto detail = error_detail::usual; detail <= last_error_detail;
        detail = static_cast<error_detail>(static_cast<int>(detail) + 1)) {
     const error longest(task::configuring, problem::no_port, std::string(127, 'x'), 0, detail);
     EXPECT_LT(longest.advice().size(), 256U);

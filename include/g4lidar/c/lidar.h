@@ -111,7 +111,8 @@ G4LIDAR_C_API void g4lidar_options_init(g4lidar_options* options, size_t size);
 
 /** Opens the lidar that `device` names, as in g4lidar_options, and queries its identity. A scan that
  *  is running is stopped first. Takes about 60 ms with a healthy lidar, at most 3 s with one fault,
- *  and at most 15 s if many bytes are damaged; 2.5 s more for each port that is queried first. */
+ *  and at most 15 s if many bytes are damaged; 4 s more for each port that is queried first, and 5 s
+ *  where a model that was named is silent at its baud rate and is searched at the others. */
 G4LIDAR_C_API int g4lidar_open(const char* device, g4lidar_lidar** lidar, g4lidar_error* error);
 /** The same with options, which may be NULL. */
 G4LIDAR_C_API int g4lidar_open_with(const g4lidar_options* options, g4lidar_lidar** lidar,

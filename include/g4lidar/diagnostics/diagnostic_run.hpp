@@ -57,7 +57,7 @@ struct diagnostic_options {
 /// need a device are skipped for a file.
 ///
 /// Takes about 3 s plus `measuring_time` with a healthy lidar, 8 s if it has to be searched, and at most
-/// 45 s plus `measuring_time` with one fault, if answers are at most 4 s late. Sends queries, one start,
+/// 45 s plus `measuring_time` with one fault, if answers are at most 4 s late. Sends queries, starts,
 /// and stops; as long as nothing has answered and no model is named, only the question for the device
 /// information. To a model without commands none but two bytes while it is searched. Changes no setting;
 /// the motor is stopped at the end, if it can be. *Allocates. Single thread.*

@@ -204,7 +204,7 @@ holder, manufacturer, product, usb_serial, device (model, serial, firmware, hard
 
 --probe listens at each port with such a bridge that no process has open. Where it is silent,
 it asks with two bytes, at each baud rate that lidars have; --baud: at this one only. It stops a
-lidar that is scanning, if that has commands. It takes at most 3 s a port. The exit code is 3 if
+lidar that is scanning, if that has commands. It takes at most 4 s a port. The exit code is 3 if
 no port has that bridge; with --probe, if no lidar was found, that of the problem at the first
 such port.)";
 
