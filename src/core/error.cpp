@@ -119,7 +119,7 @@ struct detail_words {
   std::string_view cause;
   std::string_view advice;
 };
-constexpr std::array<detail_words, 24> all_details{{
+constexpr std::array<detail_words, 25> all_details{{
     {"no scan arrived in time, because the motor spins up",
      "Call again or wait longer: the first scan arrives about 0.7 s after the start, later with a "
      "heavy or cold motor. If the head does not turn within 10 s, check the power supply."},

@@ -210,8 +210,8 @@ void live_run::see_samples() {
   start_scan();
   const std::int64_t until_ns = link_.now_ns() + samples_ns;
   const auto is_certain = [this] {
-    const std::size_t size = link_.layout().sample_bytes();
-    return size != 0 && link_.layout().votes(size) >= certain_packets;
+    const std::size_t size = link_.survey().layout().sample_bytes();
+    return size != 0 && link_.survey().layout().votes(size) >= certain_packets;
   };
   while (!link_.is_over() && link_.now_ns() < until_ns && !is_certain()) link_.listen_for(50 * ms);
 }
@@ -219,10 +219,10 @@ void live_run::see_samples() {
 void live_run::read_information() {
   if (lidar_.which->ct_information == presence::no) return;
   const std::int64_t until_ns = link_.now_ns() + information_ns;
-  while (!link_.is_over() && link_.now_ns() < until_ns && !link_.layout().information()) {
+  while (!link_.is_over() && link_.now_ns() < until_ns && !link_.survey().layout().information()) {
     link_.listen_for(50 * ms);
   }
-  const auto stated = link_.layout().information();
+  const auto stated = link_.survey().layout().information();
   if (!stated) return;
   if (const auto who = information_of(*stated, *lidar_.which); who.is_known()) {
     device_.information = who;

@@ -53,7 +53,7 @@ first_contact::state first_contact::unknown(stage_report& baud) {
   baud.add("bytes_of_no_packet", garbage_);
   const std::optional<stream_survey>& other = link.searched().other;
   if (!find_other_source(baud, other ? *other : link.survey()) &&
-      !find_other_layout(baud, link.layout(), *of_.lidar.which)) {
+      !find_other_layout(baud, link.survey().layout(), *of_.lidar.which)) {
     baud.find(diagnosis::unknown_bytes);
     if (!tried_.empty()) baud.remark = "No packet at any rate that was tried: " + tried_ + ".";
     if (baud.remark.empty()) baud.remark = arrived(link.survey());
@@ -265,7 +265,7 @@ bool first_contact::scans_when_started() {
   if (of_.lidar.is_driven_by_dtr()) pulse_dtr(link);
   link.send(command::start);
   link.listen_for(1'500 * ms);
-  const bool scans = link.layout().sample_bytes() != 0 || link.counts().packets > 0;
+  const bool scans = link.survey().layout().sample_bytes() != 0 || link.counts().packets > 0;
   link.stop();
   return scans;
 }

@@ -164,11 +164,10 @@ class link_monitor {
   [[nodiscard]] std::int64_t host_paused_ns() const noexcept { return host_paused_ns_; }
   /// Pauses of the host of any length.
   [[nodiscard]] std::uint64_t host_pauses() const noexcept { return host_pauses_; }
-  /// Of the same.
-  [[nodiscard]] const layout_recogniser& layout() const noexcept { return survey_.layout(); }
   /// The size of samples in the last packets that showed it, whatever model they were read as; 0: none has.
   [[nodiscard]] std::size_t sample_bytes() const noexcept {
-    return layout().sample_bytes() != 0 ? layout().sample_bytes() : sample_bytes_;
+    const std::size_t seen = survey_.layout().sample_bytes();
+    return seen != 0 ? seen : sample_bytes_;
   }
   /// Of all that was received and sent, but by search().
   [[nodiscard]] const stream_survey& survey() const noexcept { return survey_; }

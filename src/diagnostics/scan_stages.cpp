@@ -104,7 +104,7 @@ live_run::scan_state live_run::warm_up(stream_statistics& measured) {
 
 /// Whether the packets have samples of another size than the model.
 bool live_run::is_of_other_size() const {
-  const layout_recogniser& seen = link_.layout();
+  const layout_recogniser& seen = link_.survey().layout();
   const std::size_t size = seen.sample_bytes();
   const std::size_t own = sample_size(lidar_.which->samples.layout);
   return size != 0 && size != own && seen.votes(own) == 0 && seen.votes(size) >= certain_packets;
@@ -113,7 +113,7 @@ bool live_run::is_of_other_size() const {
 /// The number may be that of another model: its packets decide. Whether they are read in another way from here on.
 bool live_run::follow_samples() {
   if (!is_of_other_size()) return false;
-  const std::size_t size = link_.layout().sample_bytes();
+  const std::size_t size = link_.survey().layout().sample_bytes();
   auto fitting = models_that_fit({.baud = link_.port().baud(),
                                   .is_baud_certain = lidar_.has_baud,
                                   .sample_bytes = size,
@@ -179,7 +179,7 @@ bool live_run::start_motor() {
     motor.remark = reading_;
   }
   if (lidar_.is_named && is_of_other_size()) {
-    find_other_layout(motor, link_.layout(), *lidar_.which);
+    find_other_layout(motor, link_.survey().layout(), *lidar_.which);
   }
   add_failure(motor);
   const bool runs = state == scan_state::runs && !link_.is_over();

@@ -157,7 +157,7 @@ result<answer> live_driver::ask(const request& wanted, while_scanning how) {
   if (!question_.was_woken(wanted) || !stream_.talk().is_busy()) {
     question_.forget_woken();
     if (auto ready = settle(); !ready) return tl::unexpected(ready.error());
-    stream_.begin_request();
+    stream_.heard() = {};
     if (const auto refused = stream_.talk().begin(wanted, now_ns(), how)) {
       return tl::unexpected(
           refusal_error(task::asking, *refused, wanted, *options_.model, connection_.name()));

@@ -68,7 +68,7 @@ result<bool> live_driver::go_on_with_setup() {
       if (auto lowered = stream_.set_motor(false); !lowered) return tl::unexpected(lowered.error());
     }
     const request next = request_of(setup_.next(), options_);
-    stream_.begin_request();
+    stream_.heard() = {};
     const auto refused = talk.begin(next, now_ns());
     if (refused == refusal::bad_setting || refused == refusal::not_supported) {
       const error why =

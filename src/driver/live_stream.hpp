@@ -40,9 +40,8 @@ class live_stream {
 
   /// What the device has reported unasked.
   [[nodiscard]] identity_reader& reported() noexcept { return reported_; }
-  /// What was received and sent since the connection was opened, or since begin_request().
-  [[nodiscard]] const unrecognised_bytes& heard() const noexcept { return heard_; }
-  void begin_request() noexcept { heard_ = {}; }
+  /// What was received and sent since the connection was opened; a request begins by clearing it.
+  [[nodiscard]] unrecognised_bytes& heard() noexcept { return heard_; }
   /// Whether the bridge has negotiated as telnet does, when the connection began.
   [[nodiscard]] bool speaks_telnet() const noexcept {
     return changes_.change() == stream_change::telnet;

@@ -22,7 +22,7 @@ constexpr std::uint64_t few = 8;
 constexpr std::array<std::uint8_t, 3> taken_alone{0x03, tab, carriage_return};
 constexpr std::array<std::array<std::uint8_t, 2>, 2> taken_together{{{xon, xoff}, {0x15, 0x17}}};
 /// Odd control characters that nothing takes.
-constexpr std::array<std::uint8_t, 7> usual{0x05, 0x07, 0x0B, 0x19, 0x1B, 0x1D, 0x1F};
+constexpr std::array<std::uint8_t, 7> usual_controls{0x05, 0x07, 0x0B, 0x19, 0x1B, 0x1D, 0x1F};
 /// So many of each usual one, for each that is absent: then the absence is no chance.
 constexpr std::size_t surely = 16;
 
@@ -118,8 +118,8 @@ change_signs::control_set change_signs::missing() const noexcept {
   control_set absent;
   if (headers_.count < few) return absent;
   // Those of a head that stands, or of equal revolutions, are equal: each is counted once with the byte before it.
-  std::size_t fewest = behind_[usual[0]].count();
-  for (const std::uint8_t each : usual) fewest = std::min(fewest, behind_[each].count());
+  std::size_t fewest = behind_[usual_controls[0]].count();
+  for (const std::uint8_t each : usual_controls) fewest = std::min(fewest, behind_[each].count());
   for (const std::uint8_t each : taken_alone) absent.set(each, count_of(each) == 0);
   for (const auto& [one, other] : taken_together) {
     const bool is_pair = count_of(one) == 0 && count_of(other) == 0;
