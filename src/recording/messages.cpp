@@ -257,11 +257,9 @@ recorded_device device_of(field_reader& map) {
     if (name == "firmware") take_firmware(who, value);
     if (name == "hardware") who.hardware = number_in<std::uint8_t>(value).value_or(0);
     if (name == "serial_number") take_serial(who, value);
-    if (name == "frequency_chz") {
-      if (const auto chz = number_in<std::uint16_t>(value)) device.frequency = scan_frequency{*chz};
-    }
-    const bool is_rate = name == "sample_rate" || name == "ranging";  // its name until 2026-11
-    if (is_rate) device.sample_rate = rate_from(value);
+    const auto chz = name == "frequency_chz" ? number_in<std::uint16_t>(value) : std::nullopt;
+    if (chz) device.frequency = scan_frequency{*chz};
+    if (name == "sample_rate" || name == "ranging") device.sample_rate = rate_from(value);
     if (name == "motor_direction") take_setting(device.motor, value);
     if (name == "constant_frequency") take_setting(device.constant, value);
     if (name == "low_power") take_setting(device.idle, value);
