@@ -68,8 +68,12 @@ bool first_contact::make_quiet() {
 
 void first_contact::report_scanning() {
   if (of_.lidar.is_one_way()) return;
-  if (of_.lidar.was_scanning) of_.answers.find(diagnosis::was_scanning);
-  if (of_.lidar.is_deaf) of_.answers.find(diagnosis::deaf);
+  // Why one scans that ignores commands is not known.
+  if (of_.lidar.is_deaf) {
+    of_.answers.find(diagnosis::deaf);
+  } else if (of_.lidar.was_scanning) {
+    of_.answers.find(diagnosis::was_scanning);
+  }
 }
 
 bool first_contact::ask() {

@@ -31,7 +31,7 @@ struct examined {
   bool motor_turns = false;
   sim::device_settings settings;
 
-  /// The names of all diagnoses in the order of the stages: "was_scanning deaf".
+  /// The names of all diagnoses in the order of the stages: "answers_late deaf".
   [[nodiscard]] std::string diagnoses() const {
     std::string text;
     for (const auto& stage : stages) {

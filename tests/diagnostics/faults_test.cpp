@@ -86,7 +86,7 @@ const std::vector<expectation> expectations{
     {"mute", {"mute"}, "silent", true},
     {"mute_and_named", {"mute"}, "answers_missing", true, true, true},
     {"mute_at_times", {"mute*0.3"}, "answers_missing", true},
-    {"deaf_and_scanning", {"deaf", "scanning"}, "was_scanning deaf", true, false},
+    {"deaf_and_scanning", {"deaf", "scanning"}, "deaf", true, false},
     {"deaf_later", {"deaf@3s"}, "deaf", true, false},
     {"deaf_and_idle", {"deaf"}, "silent", true},
     {"baud_and_scanning", {"baud", "scanning"}, "unknown_bytes", true, false},
