@@ -219,7 +219,10 @@ def test_what_contradicts_the_model_is_reported() -> None:
 
 @pytest.mark.parametrize("page", ["README.md", "docs/python.md"])
 def test_the_shortest_program_runs_with_each_model(page: str) -> None:
-    text = (Path(__file__).parents[2] / page).read_text(encoding="utf-8")
+    file = Path(__file__).parents[2] / page
+    if not file.exists():
+        pytest.skip("the documents are not beside the tests")
+    text = file.read_text(encoding="utf-8")
     program = text.split("```python\n")[1].split("```")[0]
     with pytest.raises(errors.BadOption) as refused:
         g4lidar.open("sim:", model="none")

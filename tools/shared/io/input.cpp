@@ -267,6 +267,8 @@ std::string why_no_packet(const stream_counts& counts, std::uint64_t bytes,
 std::string warning_about(const stream_counts& counts, std::uint64_t bytes,
                           std::span<const std::uint8_t> beginning) {
   if (counts.packets == 0) return {};
+  // A healthy lidar sends one byte a revolution that is none of a packet.
+  if (1'000 * counts.skipped_bytes() < bytes) return {};
   if (const std::string known = g4lidar::what_is(beginning); !known.empty()) return known + "\n";
   if (diagnosis_of(counts, bytes) != diagnosis::line_noise) return {};
   return "More than half of the bytes belong to no packet. " + baud_question() + "\n";
