@@ -93,6 +93,7 @@ enum class error_detail : std::uint8_t {
   only_listens,  ///< not_supported: the lidar is only listened to (lidar_options::listen_only), or answers nothing.
   known_bytes,  ///< garbage: text, an echo, or bytes that were changed on their way; the subject has what to do.
 };
+/// The last one: the rows of a table of texts are counted by it.
 inline constexpr error_detail last_error_detail = error_detail::known_bytes;
 
 /// One error. Trivially copyable, never allocates.

@@ -15,8 +15,8 @@ namespace g4lidar {
 
 /// From what the model of a source is known.
 enum class known_by : std::uint8_t {
-  nothing,    ///< It is not: the source is read as a G4.
-  user,       ///< lidar_options::model, or the name of the source.
+  nothing,  ///< It is not: the source is read as a G4, or as a model with the baud rate, until its packets show more.
+  user,     ///< lidar_options::model, or the name of the source.
   recording,  ///< The recording states it, or the simulated lidar.
   number,  ///< The number that the device reports, with the baud rate where several models have it.
   samples,  ///< The size of its samples, and the rates: other models may send the same.

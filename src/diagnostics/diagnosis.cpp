@@ -111,8 +111,7 @@ constexpr std::array rows{
         "0 if the angles are right without it."),
     row("answers_missing", fail, "Replies are missing, although commands reach the lidar.",
         answer_advice, {interference}),
-    row("other_number", warn,
-        "The lidar states a number that the model does not have. It names no other model surely.",
+    row("other_number", warn, "The lidar states a number that the model does not have.",
         "Compare the model with the label of the lidar, and name the right one: ranges and angles "
         "may be wrong."),
     row("other_device", fail, "The lidar is another model than the one that was expected.",
@@ -225,7 +224,8 @@ diagnosis diagnosis_of(problem what) noexcept {
 
 std::optional<diagnosis> diagnosis_of(const stream_counts& counts, std::uint64_t size) noexcept {
   if (size == 0) return bad_file;
-  if (counts.packets + counts.responses == 0) return unknown_bytes;
+  const bool is_lidar = counts.responses > 0 && counts.skipped_bytes() <= size / 2;
+  if (counts.packets == 0 && !is_lidar) return unknown_bytes;
   if (counts.packets > 0 && counts.skipped_bytes() > size / 2) return line_noise;
   return std::nullopt;
 }

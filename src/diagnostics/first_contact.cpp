@@ -49,6 +49,7 @@ first_contact::state first_contact::make(stage_report& baud) {
 /// The diagnosis of bytes that are none of a lidar.
 first_contact::state first_contact::unknown(stage_report& baud) {
   link_monitor& link = of_.link;
+  if (garbage_ == 0) garbage_ = link.searched().bytes;  // answers that were damaged
   if (garbage_ == 0 || link.is_over()) return state::none;
   baud.add("bytes_of_no_packet", garbage_);
   const std::optional<stream_survey>& other = link.searched().other;
@@ -209,6 +210,10 @@ first_contact::state first_contact::search(stage_report& baud) {
   }
   if (link.boots() > 0) asked_ns_ = link.searched().asked_ns;
   wait_for_late_answers();
+  if (found->speaks_telnet) {
+    baud.find(diagnosis::changed_bytes);
+    baud.remark = words_for(stream_change::telnet);
+  }
   lidar.is_met = true;
   lidar.is_deaf = found->is_silent;
   lidar.was_scanning = found->was_scanning && !wanted.listen_only;

@@ -233,6 +233,7 @@ result<recognised_lidar> link_monitor::search(const search_options& known, std::
       .received =
           [&](bytes data, std::int64_t took_ns) {
             if (took_ns > longest_read_ns + host_pause_after_ns) ++host_pauses_;
+            searched_.bytes += data.size();
             if (questions.empty()) searched_.unasked += data.size();
             splitter_.take(data, now_ns(), {});
           },
@@ -241,9 +242,8 @@ result<recognised_lidar> link_monitor::search(const search_options& known, std::
   auto found = search.run(now_ns() + time_ns);
   if (const stream_survey* const other = search.other()) searched_.other = *other;
   searched_.counts = counts();
-  const auto is_there = [&](const auto& each) {
-    return each.first == (found ? found->baud : before);
-  };
+  const std::uint32_t its_baud = found ? transport_->baud() : before;
+  const auto is_there = [its_baud](const auto& each) { return each.first == its_baud; };
   const auto first = std::ranges::find_if(questions, is_there);
   const bool is_open = !found || std::ranges::count_if(questions, is_there) > 1;
   if (is_open && first != questions.end()) searched_.asked_ns = first->second;

@@ -110,6 +110,7 @@ struct exchange {
 
 /// What was observed during a search.
 struct search_record {
+  std::uint64_t bytes = 0;    ///< At all rates.
   std::uint64_t unasked = 0;  ///< Bytes before the first question, at all rates.
   stream_counts counts{};
   std::int64_t asked_ns =

@@ -16,9 +16,6 @@
 
 namespace g4lidar {
 
-/// So many packets in a row decide the size of samples.
-inline constexpr std::uint32_t certain_packets = 5;
-
 /// One run. *Single thread.*
 class live_run {
  public:

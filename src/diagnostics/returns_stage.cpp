@@ -63,7 +63,7 @@ void report_returns(stage_log& log, const stream_statistics& measured, const dev
   if (!arcs.empty()) {
     report.remark.append("Nothing returned in ").append(places).append(", ");
     report.remark += wished.in == frame::robot ? "counter-clockwise from ahead (frame robot)."
-                                               : "clockwise from the cable (frame vendor).";
+                                               : "clockwise from 0 of the lidar (frame vendor).";
     report.remark += arcs.front().width_deg > full_turn_deg / 2
                          ? " Is the window covered there, or is nothing within the range?"
                          : " Is something mounted there?";

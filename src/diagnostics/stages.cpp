@@ -145,6 +145,13 @@ bool report_health(stage_log& log, const std::optional<health>& known) {
   return known->status != health_status::error;
 }
 
+bool is_mostly_damaged(const stream_statistics& measured) noexcept {
+  const stream_counts& counts = measured.tally().counts;
+  const std::uint64_t damaged =
+      counts.skipped(skip_reason::bad_checksum) + counts.skipped(skip_reason::bad_header);
+  return damaged > counts.parsed_bytes && 4 * damaged > counts.skipped_bytes();
+}
+
 void judge_stream(stage_report& stream, const stream_statistics& measured, double seconds) {
   const arrival_statistics& arrivals = measured.tally().arrivals;
   const stream_counts& counts = measured.tally().counts;
@@ -163,7 +170,7 @@ void judge_stream(stage_report& stream, const stream_statistics& measured, doubl
   }
   if (measured.has_become_garbage()) {
     stream.add("bytes_since_last_packet", measured.bytes_since_packet());
-    stream.find(diagnosis::wrong_baud_rate);
+    if (!is_mostly_damaged(measured)) stream.find(diagnosis::wrong_baud_rate);
   }
   // Among many damaged packets some have a matching checksum, and look like jolts.
   if (20 * measured.tally().jerks > measured.tally().damage.changed && measured.was_steady()) {
@@ -174,6 +181,11 @@ void judge_stream(stage_report& stream, const stream_statistics& measured, doubl
 
 void judge_motor(stage_report& motor, const stream_statistics& measured) {
   if (measured.tally().counts.packets <= few_packets || measured.was_steady()) return;
+  if (is_mostly_damaged(measured)) {
+    motor.outcome = stage_verdict::skipped;
+    motor.remark = "Too many packets are damaged.";
+    return;
+  }
   motor.find(measured.stands() ? diagnosis::motor_stuck : diagnosis::motor_unsteady);
 }
 
@@ -220,13 +232,14 @@ void report_loss(stage_log& log, const stream_statistics& measured, const model&
     }
     if (is_changed && !loss.diagnoses.empty()) loss.remark = seen->finding();
   }
+  if (loss.diagnoses.empty() && is_mostly_damaged(measured)) loss.find(diagnosis::line_noise);
   const stream_counter& counts = measured.tally().counts;
   if (wanted.ct_information == presence::yes && counts.packets > few_packets &&
       counts.crc_matches + counts.crc_mismatches == 0) {
     loss.remark =
         "No CRC byte was seen, which " + one_of(wanted) + " sends: old firmware has none.";
   }
-  if (damage.all() <= few_events) {
+  if (damage.all() <= few_events && !is_mostly_damaged(measured)) {
     if (!loss.diagnoses.empty()) loss.remark = "This is little evidence: measure longer.";
     if (lost < few_lost) loss.outcome = std::min(loss.outcome, stage_verdict::warn);
   }

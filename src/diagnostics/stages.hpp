@@ -75,6 +75,9 @@ void examine_file(const std::string& source, stage_log& log);
 /// The program was suspended for as long as a stall: what depends on time is not judged.
 [[nodiscard]] bool is_host_busy(const stream_statistics& measured) noexcept;
 
+/// Whether most bytes are those of packets whose headers can be seen: at another baud rate there are none. *Pure.*
+[[nodiscard]] bool is_mostly_damaged(const stream_statistics& measured) noexcept;
+
 /// Whether a lidar that was named is refused for its number, as lidar::open() refuses it. `baud` 0: not known.
 [[nodiscard]] bool refuses_number(const diagnostic_options& options, const model& stated,
                                   std::uint8_t number, std::uint32_t baud);

@@ -13,8 +13,6 @@ namespace {
 /// A lidar that announces itself sends packets right after it.
 constexpr std::int64_t announcement_ns = 40'000'000;
 constexpr std::int64_t stops_ns = 2'000'000'000;
-/// In a row, to contradict the number of the device.
-constexpr std::uint32_t certain_packets = 5;
 constexpr std::int64_t certain_ns = 100'000'000;
 
 error refused(const transport& port, std::string_view product) {
@@ -40,12 +38,13 @@ recognised_lidar lidar_search::made(std::vector<const model*> candidates,
                                     const lidar_signs& of) const {
   recognised_lidar lidar;
   lidar.model = options_.model != nullptr ? options_.model : candidates.front();
-  lidar.baud = port_.baud();
+  lidar.baud = has_fixed_rate_ ? options_.baud : port_.baud();  // that of a bridge is not known
   lidar.was_scanning = of.sample_bytes != 0;
   const bool is_numbered = of.id != 0 || of.ct_id_low_bits != 0;
   lidar.by = options_.model != nullptr ? known_by::user
              : is_numbered             ? known_by::number
-                                       : known_by::samples;
+             : of.sample_bytes != 0    ? known_by::samples
+                                       : known_by::nothing;
   lidar.is_silent = !options_.listen_only && of.answers == presence::no &&
                     lidar.model->link == link_kind::two_way;
   lidar.speaks_telnet = heard_.change() == stream_change::telnet;
@@ -97,13 +96,18 @@ lidar_search::found lidar_search::judge_stream() {
 
 /// Nothing is sent. Packets of a named model must have its samples; whether an unnamed one answers is not known.
 lidar_search::found lidar_search::judge_named() {
+  if (options_.model == nullptr) {
+    const auto is_informed = [this] { return heard_.layout().has_stated_all(); };
+    if (auto done = listen(in_ns(information_ns), is_informed); !done) {
+      return tl::unexpected(done.error());
+    }
+    const lidar_signs seen = signs();
+    auto all = models_that_fit(seen);
+    if (all.empty()) all = models_of_size(seen);
+    return made(std::move(all), seen);
+  }
   lidar_signs known = signs();
   known.answers = presence::no;
-  if (options_.model == nullptr) {
-    auto all = models_that_fit(signs());
-    if (all.empty()) all = models_of_size(known.sample_bytes, presence::unknown);
-    return made(std::move(all), known);
-  }
   const std::size_t own = sample_size(options_.model->samples.layout);
   if (known.sample_bytes == own) return made({options_.model}, known);
   return failure(task::asking, problem::other_device,
@@ -147,7 +151,7 @@ lidar_search::found lidar_search::judge_silent(lidar_signs known, std::int64_t u
   // A device that boots, or is busy, may stop later.
   const bool has_time = port_.now_ns() + one_stop_ns + information_ns < deadline_ns_;
   if (!all.empty() && has_time) return failure(task::asking, problem::does_not_stop, port_.name());
-  if (all.empty()) all = models_of_size(known.sample_bytes, presence::no);
+  if (all.empty()) all = models_of_size(known);
   return made(std::move(all), known);
 }
 

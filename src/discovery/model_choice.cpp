@@ -85,9 +85,11 @@ std::vector<const model*> models_that_fit(const lidar_signs& seen) {
   const bool is_stated = seen.id != 0 || seen.ct_id_low_bits != 0;
   const bool is_variant =
       std::ranges::none_of(models, [&seen](const model& row) { return has_rate(row, seen.baud); });
-  if (found.empty() && (is_stated || is_variant || !seen.is_baud_certain)) {
-    found = all_with(false, true);
-    std::erase_if(found, is_far_off);
+  const bool is_other = !seen.is_baud_certain && std::ranges::all_of(found, is_far_off);
+  if (is_other || (found.empty() && (is_stated || is_variant))) {
+    auto others = all_with(false, true);
+    std::erase_if(others, is_far_off);
+    if (found.empty() || !others.empty()) found = std::move(others);
   }
   if (found.empty()) found = all_with(true, false);
   // Where the rate does not decide, those whose usual number it is come first.
@@ -106,9 +108,20 @@ std::vector<const model*> models_that_fit(const lidar_signs& seen) {
   return found;
 }
 
-std::vector<const model*> models_of_size(std::size_t sample_bytes, presence answers) {
-  auto all = models_that_fit({.sample_bytes = sample_bytes, .answers = answers});
-  return all.empty() ? models_that_fit({.sample_bytes = sample_bytes}) : all;
+std::vector<const model*> models_of_size(const lidar_signs& seen) {
+  lidar_signs known{.sample_bytes = seen.sample_bytes,
+                    .sample_rate_hz = seen.sample_rate_hz,
+                    .answers = seen.answers};
+  auto all = models_that_fit(known);
+  if (all.empty()) {
+    known.answers = presence::unknown;
+    all = models_that_fit(known);
+  }
+  const auto is_far_off = [&](const model* row) {
+    return !may_measure(*row, known.sample_rate_hz);
+  };
+  if (!std::ranges::all_of(all, is_far_off)) std::erase_if(all, is_far_off);
+  return all;
 }
 
 std::vector<const model*> models_of_answer(lidar_signs seen, bool are_samples_certain) {
@@ -121,7 +134,7 @@ std::vector<const model*> models_of_answer(lidar_signs seen, bool are_samples_ce
   if (!fitting.empty()) return fitting;
   seen.id = 0;
   fitting = models_that_fit(seen);
-  return fitting.empty() ? models_of_size(seen.sample_bytes, presence::yes) : fitting;
+  return fitting.empty() ? models_of_size(seen) : fitting;
 }
 
 bool may_be_two_way(const lidar_signs& seen) {

@@ -31,14 +31,14 @@ struct lidar_signs {
 
 /// The models that `seen` may come from, the usual one first: all that agree with the number, the size of
 /// samples, the baud rate and the kind of connection. The baud rate is ignored where no model agrees with
-/// it and the number, where no model has it, or where it is not certain; then the CT bytes, which other devices use
+/// it and the number, where no model has it, or where it is not certain and the sample rate is another one; then the CT bytes, which other devices use
 /// otherwise. Models with the number as their usual one come before those that some devices report it of.
 /// Empty if there is none. *Allocates.*
 [[nodiscard]] std::vector<const model*> models_that_fit(const lidar_signs& seen);
 
-/// The models with samples of this size, whatever their rates; those that answer so, if there are any. Never empty for 0, 2,
-/// 3 and 4 bytes. *Allocates.*
-[[nodiscard]] std::vector<const model*> models_of_size(std::size_t sample_bytes, presence answers);
+/// The models with samples of this size, whatever their numbers and baud rates; those that answer so, and those that
+/// measure so often, if there are any. Never empty for 0, 2, 3 and 4 bytes. *Allocates.*
+[[nodiscard]] std::vector<const model*> models_of_size(const lidar_signs& seen);
 
 /// The models of a device that has answered with its number. Samples that are certain are right where they contradict it; a
 /// number that no model has decides nothing. Never empty. *Allocates.*

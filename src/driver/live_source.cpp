@@ -109,7 +109,7 @@ result<void> live_source::settle() {
 result<void> live_source::identified(const device_information& who) {
   const auto other = other_device_error(who, *options_.model, connection_.name());
   if (other && refuses(who)) return tl::unexpected(*other);
-  recognised_.set_device(who.model, connection_.on().baud());
+  recognised_.set_device(who.model, known_baud());
   if (other) report(lidar_event::kind::other_number);
   // A one-way lidar may state its number before its serial number.
   const bool is_part = options_.model->link == link_kind::one_way &&
@@ -126,11 +126,20 @@ result<void> live_source::identified(const device_information& who) {
   return {};
 }
 
+/// Of the line; 0: behind a bridge, where nobody has named it.
+std::uint32_t live_source::known_baud() const noexcept {
+  const bool is_bridged = connection_.name().starts_with("tcp:");
+  return is_bridged ? options_.baud : connection_.on().baud();
+}
+
 /// Whether the number of another model ends it: nothing that the device will send can decide. A model that was stated is
 /// right where the samples of the other one have another size, or its line another rate. What was recognised by its
 /// samples has another number anyhow.
 bool live_source::refuses(const device_information& who) const noexcept {
-  if (options_.insist_on_model || recognised_.get().by == known_by::samples) return false;
+  const known_by by = recognised_.get().by;
+  const bool is_guessed = by == known_by::samples ||
+                          (by == known_by::nothing && connection_.from().traits().is_searched);
+  if (options_.insist_on_model || is_guessed) return false;
   return is_surely_another(*options_.model, who.model, connection_.on().baud());
 }
 

@@ -82,6 +82,7 @@ class live_source : public scan_source {
   [[nodiscard]] result<void> advance(std::int64_t deadline_ns) final;
   [[nodiscard]] result<void> connect();
   [[nodiscard]] bool refuses(const device_information& who) const noexcept;
+  [[nodiscard]] std::uint32_t known_baud() const noexcept;
   [[nodiscard]] result<void> hang_up();
 };
 

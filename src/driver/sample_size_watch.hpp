@@ -29,12 +29,11 @@ class sample_size_watch {
   /// them; else 0.
   [[nodiscard]] std::size_t other() const noexcept {
     const std::size_t size = seen_.sample_bytes();
-    return size != 0 && size != expected_ && seen_.votes(size) >= in_a_row ? size : 0;
+    return size != 0 && size != expected_ && seen_.votes(size) >= certain_packets ? size : 0;
   }
 
  private:
   static constexpr std::uint32_t enough = 3;
-  static constexpr std::uint32_t in_a_row = 5;
 
   std::size_t expected_;
   std::uint32_t fits_ = 0;  // packets of the expected size that another one follows

@@ -200,6 +200,9 @@ result<std::unique_ptr<connector>> connector_for(const lidar_options& options, b
     case source_kind::recording:
       return of_model(replay::open(path, options.playback, options.is_cancelled), *named);
     case source_kind::raw_bytes:
+      if (wanted != nullptr) {
+        if (const auto other = problem_with_bytes(path, *wanted)) return tl::unexpected(*other);
+      }
       return open_raw_bytes(path, options.raw_sample_rate_hz, options.playback,
                             options.is_cancelled, wanted);
     case source_kind::simulated:

@@ -40,7 +40,15 @@ stream_survey surveyed_at(const owned_fd& fd, off_t at) {
   return seen;
 }
 
-std::optional<error> refusal_of(const stream_survey& seen, std::string_view title) {
+std::optional<error> refusal_of(const stream_survey& seen, std::string_view title,
+                                const model* named) {
+  const std::size_t size = seen.layout().sample_bytes();
+  const bool is_certain = seen.layout().votes(size) >= certain_packets;
+  if (named != nullptr && is_certain && size != sample_size(named->samples.layout))
+    return error(task::opening, problem::other_device,
+                 std::string(title) + ", packets with samples of " + std::to_string(size) +
+                     " bytes, not of " + std::to_string(sample_size(named->samples.layout)),
+                 0, error_detail::other_samples);
   if (seen.layout().has_packet()) return std::nullopt;
   if (const other_maker* const other = seen.maker()) {
     return error(task::opening, problem::other_device,
@@ -52,12 +60,27 @@ std::optional<error> refusal_of(const stream_survey& seen, std::string_view titl
                std::string(title).append(": ").append(seen.finding()));
 }
 
-recognised_model recognised_in(const std::string& path) {
+namespace {
+
+/// Nothing if it is not a regular file.
+std::optional<stream_survey> surveyed_in(const std::string& path) {
   struct stat file{};
   const bool is_known = (path == "-" ? ::fstat(0, &file) : ::stat(path.c_str(), &file)) == 0;
-  if (!is_known || !S_ISREG(file.st_mode)) return {};
+  if (!is_known || !S_ISREG(file.st_mode)) return std::nullopt;
   const owned_fd fd = open_bytes(path);
-  return model_of(surveyed_at(fd, std::max<off_t>(::lseek(fd.get(), 0, SEEK_CUR), 0)));
+  return surveyed_at(fd, std::max<off_t>(::lseek(fd.get(), 0, SEEK_CUR), 0));
+}
+
+}  // namespace
+
+recognised_model recognised_in(const std::string& path) {
+  const auto seen = surveyed_in(path);
+  return seen ? model_of(*seen) : recognised_model{};
+}
+
+std::optional<error> problem_with_bytes(const std::string& path, const model& named) {
+  const auto seen = surveyed_in(path);
+  return seen ? refusal_of(*seen, path, &named) : std::nullopt;
 }
 
 const model& model_of_bytes(const std::string& path) { return *recognised_in(path).which; }

@@ -21,6 +21,7 @@ namespace g4lidar {
 [[nodiscard]] stream_survey surveyed_at(const owned_fd& fd, off_t at);
 [[nodiscard]] recognised_model model_of(const stream_survey& seen) noexcept;
 /// Why a file with these bytes cannot be read; nothing if a part of it may be packets.
-[[nodiscard]] std::optional<error> refusal_of(const stream_survey& seen, std::string_view title);
+[[nodiscard]] std::optional<error> refusal_of(const stream_survey& seen, std::string_view title,
+                                              const model* named = nullptr);
 
 }  // namespace g4lidar

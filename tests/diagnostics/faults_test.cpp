@@ -130,6 +130,23 @@ TEST(Faults, AllKindsAreExpected) {
   EXPECT_EQ(seen.size(), static_cast<std::size_t>(sim::last_fault_kind) + 1);
 }
 
+// So much noise that hardly a packet is left: neither the motor nor the baud rate is at fault, and it is not silent.
+TEST(Faults, AVeryNoisyLine_IsNothingElse) {
+  for (const std::string_view fault :
+       {"flip*0.05@1s", "drop*0.04@1s", "flip*0.2@1s", "insert*0.05@1s", "flip*0.1"}) {
+    for (const char* const word : {"g4", "x4", "t-mini-plus"}) {
+      sim::device_options options;
+      ASSERT_TRUE(sim::use_model(options, word));
+      const examined done = examine(options, faults_of({fault}));
+      for (const auto* const wrong :
+           {"motor_stuck", "motor_unsteady", "wrong_baud_rate", "silent", "brown_out"}) {
+        EXPECT_EQ(done.diagnoses().find(wrong), std::string::npos) << word << fault << done;
+      }
+      EXPECT_NE(done.diagnoses(), "") << word << fault << done;
+    }
+  }
+}
+
 // A device that is silent from the begin may have one of several faults: the diagnosis names them.
 TEST(Faults, Silence_NamesTheAlternatives) {
   std::set<diagnosis> others;

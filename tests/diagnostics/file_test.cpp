@@ -274,7 +274,8 @@ TEST(Bytes, AreDiagnosedByTheirCounts) {
   counts.skipped_by_reason = {300, 200, 400, 100};
   EXPECT_EQ(diagnosis_of(counts, 1000), diagnosis::unknown_bytes);
   counts.responses = 1;
-  EXPECT_EQ(diagnosis_of(counts, 1020), std::nullopt) << "the lidar was not scanning";
+  EXPECT_EQ(diagnosis_of(counts, 1020), diagnosis::unknown_bytes) << "one answer among rubbish";
+  EXPECT_EQ(diagnosis_of(counts, 2000), std::nullopt) << "the lidar was not scanning";
   counts.packets = 1;
   EXPECT_EQ(diagnosis_of(counts, 1999), diagnosis::line_noise);
   EXPECT_EQ(diagnosis_of(counts, 2000), std::nullopt) << "half is not more than half";

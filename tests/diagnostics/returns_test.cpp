@@ -136,7 +136,7 @@ TEST(Returns, TheLineToCopy_LeavesTheSectorOut) {
         const examined done = examine_in(scene, options, how);
         const std::string remark = done.at(diagnostic_stage::returns).remark;
         EXPECT_THAT(remark, HasSubstr(in == frame::robot ? "counter-clockwise from ahead"
-                                                         : ", clockwise from the cable"));
+                                                         : ", clockwise from 0 of the lidar"));
         const auto found = options_in(remark);
         ASSERT_EQ(found.size(), static_cast<std::size_t>(place.count)) << place.walls << done;
         std::vector<sector> ignored;

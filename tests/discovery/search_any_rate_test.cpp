@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "search_bench.hpp"
@@ -79,7 +81,51 @@ TEST(SearchAtAnyRate, DeviceThatAnswersWithTheNumberOfAOneWayLidar_IsReadByItsRa
     ASSERT_TRUE(done.lidar) << done.lidar.error().message();
     EXPECT_EQ(done.lidar->model->word, "s4b");
     EXPECT_EQ(done.lidar->device.model, 12);
-    EXPECT_EQ(done.lidar->by, known_by::samples);
+    EXPECT_EQ(done.lidar->by, is_scanning ? known_by::samples : known_by::nothing);
+  }
+}
+
+/// Nothing is sent, so its sample rate alone tells an X2 from a G4: also through a bridge, whose rate is not known.
+TEST(SearchAtAnyRate, OneWayLidarThatIsListenedTo_IsReadBySampleRate) {
+  for (const std::uint32_t baud : {115'200U, 150'000U, 214'285U, 460'800U, 921'600U}) {
+    SCOPED_TRACE(baud);
+    sim::device_options options = device_of("x2");
+    options.baud = baud;
+    const searched done = search_at(options, {.listen_only = true});
+    ASSERT_TRUE(done.lidar) << done.lidar.error().message();
+    EXPECT_EQ(done.lidar->model->word, "x2");
+    for (const model* const each : done.lidar->candidates) {
+      EXPECT_TRUE(each->rates.entries[0].hz <= 5000) << each->word;
+    }
+    EXPECT_EQ(done.notes, std::vector<std::string>{});
+  }
+}
+
+/// Its rate cannot be set: that of the port is not that of the line.
+class bridge final : public forwarding_transport {
+ public:
+  using forwarding_transport::forwarding_transport;
+  result<bool> set_baud(std::uint32_t /*baud*/) noexcept override { return false; }
+};
+
+TEST(SearchAtAnyRate, BehindABridgeTheRateIsNotKnown) {
+  for (const char* const word : {"x2", "g4", "t-mini-plus", "x4"}) {
+    for (const bool only_listens : {false, true}) {
+      SCOPED_TRACE(word);
+      sim::device simulated(sim::built_in_world(), device_of(word),
+                            std::vector{sim::make_fault(sim::fault_kind::scanning)});
+      sim::virtual_clock clock;
+      clock.advance_to(5'000 * ms);
+      auto port = std::make_unique<sim::virtual_port>(simulated, clock);
+      EXPECT_EQ(port->set_baud(device_of(word).baud), true);
+      bridge to(std::move(port));
+      const auto found = search(to, to.now_ns() + 3'000 * ms, {.listen_only = only_listens});
+      ASSERT_TRUE(found) << found.error().message();
+      EXPECT_EQ(found->baud, 0U);
+      EXPECT_EQ(sample_size(found->model->samples.layout),
+                sample_size(model_named(word)->samples.layout));
+      EXPECT_EQ(found->model->word == "x2", std::string_view(word) == "x2");
+    }
   }
 }
 

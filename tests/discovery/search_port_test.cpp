@@ -100,7 +100,7 @@ TEST(SearchAtAPort, NumberThatNoModelHas_IsReadAsItsBytesShow) {
   const auto found = search_device(other);
   ASSERT_TRUE(found);
   EXPECT_EQ(found->model->word, "g4");
-  EXPECT_EQ(found->by, known_by::samples);
+  EXPECT_EQ(found->by, known_by::nothing) << "it has sent no packet";
   EXPECT_EQ(found->device.model, 77);
 }
 

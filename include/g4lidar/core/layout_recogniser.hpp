@@ -132,6 +132,10 @@ class layout_candidate {
 
 }  // namespace detail
 
+/// So many packets in a row, with samples of a size that no other packet has, are right where they contradict what a lidar
+/// reports, or its user has named.
+inline constexpr std::uint32_t certain_packets = 5;
+
 /// What the model of a stream follows from.
 enum class recognised_by : std::uint8_t {
   nothing,  ///< Not decided; the G4.

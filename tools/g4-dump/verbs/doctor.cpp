@@ -219,33 +219,33 @@ verb make_doctor_verb() {
   time.help = "Listen to the scan for so long (5s)";
   option_row json = json_row(*options);
   json.help = "A JSON object for each stage, a line each";
-  return {
-      .name = "doctor",
-      .summary = "What is wrong with a lidar, its port or a file, and what to try",
-      .arguments = {source_argument(*options)},
-      .options = joined(
-          output_rows(*options), json, time, baud_row(*options), model_row(*options),
-          in_group("Device", {listen_row(*options)}), all_ports_row(*options),
-          direction_rows(*options),
-          in_group("Filters",
-                   {frame_row("--frame",
-                              "Of --fov and --ignore; vendor: clockwise from the cable (vendor)",
-                              options->frame)}),
-          in_group("Report of a problem",
-                   {text_row("--report", "FILE",
-                             "Write a text, and a recording beside it, to attach to a report",
-                             options->report, completion::output)})),
-      .details = doctor_details,
-      .examples = {{"g4-dump doctor", "Examine the only lidar"},
-                   {"g4-dump doctor --json -d 30s /dev/ttyUSB0",
-                    "Listen to one port for 30 s, as JSON"},
-                   {"g4-dump doctor walk.mcap", "Examine a recording"},
-                   {"g4-dump doctor --report report.txt",
-                    "Write report.txt and report.mcap, to attach to a report of a problem"},
-                   {"g4-dump doctor 'sim:?fault=flip'", "A simulated G4 on a bad cable"},
-                   {"g4-dump doctor 'sim:?model=x4&motor_has_power=false'",
-                    "A simulated X4 without its second plug"}},
-      .run = [options] { return examine(*options); }};
+  return {.name = "doctor",
+          .summary = "What is wrong with a lidar, its port or a file, and what to try",
+          .arguments = {source_argument(*options)},
+          .options = joined(
+              output_rows(*options), json, time, baud_row(*options), model_row(*options),
+              in_group("Device", {listen_row(*options)}), all_ports_row(*options),
+              direction_rows(*options),
+              in_group("Filters",
+                       {frame_row(
+                           "--frame",
+                           "Of --fov and --ignore; vendor: clockwise from 0 of the lidar (vendor)",
+                           options->frame)}),
+              in_group("Report of a problem",
+                       {text_row("--report", "FILE",
+                                 "Write a text, and a recording beside it, to attach to a report",
+                                 options->report, completion::output)})),
+          .details = doctor_details,
+          .examples = {{"g4-dump doctor", "Examine the only lidar"},
+                       {"g4-dump doctor --json -d 30s /dev/ttyUSB0",
+                        "Listen to one port for 30 s, as JSON"},
+                       {"g4-dump doctor walk.mcap", "Examine a recording"},
+                       {"g4-dump doctor --report report.txt",
+                        "Write report.txt and report.mcap, to attach to a report of a problem"},
+                       {"g4-dump doctor 'sim:?fault=flip'", "A simulated G4 on a bad cable"},
+                       {"g4-dump doctor 'sim:?model=x4&motor_has_power=false'",
+                        "A simulated X4 without its second plug"}},
+          .run = [options] { return examine(*options); }};
 }
 
 }  // namespace g4_tool

@@ -253,13 +253,14 @@ option_row time_row(common_options& options) {
 }
 
 option_rows shape_rows(common_options& options) {
-  return in_group("Output form",
-                  {frame_row("--frame", "vendor: clockwise from the cable; robot: REP 103 (vendor)",
-                             options.frame),
-                   choice_row("--unit", "Unit of ranges (mm)", options.unit,
-                              choices<length_unit>{{"mm", length_unit::millimetres},
-                                                   {"m", length_unit::metres}}),
-                   time_row(options)});
+  return in_group(
+      "Output form",
+      {frame_row("--frame", "vendor: clockwise from 0 of the lidar; robot: REP 103 (vendor)",
+                 options.frame),
+       choice_row(
+           "--unit", "Unit of ranges (mm)", options.unit,
+           choices<length_unit>{{"mm", length_unit::millimetres}, {"m", length_unit::metres}}),
+       time_row(options)});
 }
 
 option_row format_row(text_format& into, const char* help) {

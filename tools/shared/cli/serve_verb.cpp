@@ -58,7 +58,7 @@ option_rows server_rows(serve_options& options) {
 option_rows scan_rows(serve_options& options) {
   return in_group(
       "Scans",
-      {frame_row("--frame", "Of --fov and --ignore; vendor: clockwise from the cable (robot)",
+      {frame_row("--frame", "Of --fov and --ignore; vendor: clockwise from 0 of the lidar (robot)",
                  options.common.frame),
        choice_row(
            "--deskew", "Deskew by the odometry of the source, or by the scans alone",

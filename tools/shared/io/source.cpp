@@ -212,9 +212,9 @@ void report_contradictions(const g4lidar::lidar& from) {
   const auto has_it = [&](const g4lidar::model& row) {
     return std::ranges::find(row.ids, found.number) != row.ids.end();
   };
-  const bool may_change = found.by == known_by::samples && found.number != 0 &&
-                          std::ranges::none_of(models, has_it) && !found.was_stopped &&
-                          from.counts().stream.packets == 0;
+  const bool is_guessed = found.by == known_by::samples || found.by == known_by::nothing;
+  const bool may_change = is_guessed && found.number != 0 && std::ranges::none_of(models, has_it) &&
+                          !found.was_stopped && from.counts().stream.packets == 0;
   if (!may_change) report_contradictions(found);
 }
 
@@ -255,8 +255,12 @@ const g4lidar::model* model_of(const common_options& options,
   const source_kind kind = kind_of_source(options.source);
   const g4lidar::model* const named = named_model(options);
   if (kind == source_kind::raw_bytes) {
-    if (named != nullptr) return named;
     const std::string path = path_of_source(options.source);
+    if (named != nullptr) {
+      const auto wrong = problem_with_bytes(path, *named);
+      if (wrong && wrong->detail() == error_detail::other_samples) throw failure(*wrong);
+      return named;
+    }
     if (!is_regular_file(path)) return nullptr;
     const recognised_model found = recognised_in(path);
     if (shown == nullptr) report_model(found);
