@@ -83,11 +83,10 @@ enum class source_kind : std::uint8_t {
 [[nodiscard]] G4LIDAR_API std::function<stamped_odometry()> robot_of(
     const sim::simulated_source& of);
 
-/// What sends the bytes of `name`, as far as it is known before it is opened: what a recording or `sim:`
-/// states; of raw bytes model_in_source(), else model_of_bytes(); of a device model_in_source(), or null: it is
-/// searched when it is opened. `is_cancelled` is that of reading_options. Fails like recording_reader::open(). Valid
-/// forever.
-[[nodiscard]] G4LIDAR_API result<const model*> model_of_source(
-    std::string_view name, const std::function<bool()>& is_cancelled = {});
+/// As which model lidar::open() reads the source of these options, as far as it is known before that: what `sim:` states;
+/// else the model that is named; else what a recording states, and model_of_bytes(); of a device null: it is searched. Of
+/// the options it uses device, model, insist_on_model and is_cancelled. Fails like lidar::open() with bad_option or
+/// other_device where the source cannot be read so, and like recording_reader::open(). Valid forever. *Allocates.*
+[[nodiscard]] G4LIDAR_API result<const model*> model_of_source(const lidar_options& options);
 
 }  // namespace g4lidar

@@ -7,7 +7,6 @@
 #include <variant>
 
 #include "driver/identity_reader.hpp"
-#include "driver/option_problems.hpp"
 #include "g4lidar/core/reply_watch.hpp"
 #include "g4lidar/detail/saturating.hpp"
 #include "g4lidar/recording/raw_bytes.hpp"
@@ -32,10 +31,13 @@ class file_run {
   file_run(stage_log& log, const model& which)
       : log_(log), model_(which), splitter_(which.samples), stated_(which, true) {}
 
-  void run(const std::string& path) {
+  /// `wrong`: why it is not read.
+  void run(const std::string& path, const std::optional<error>& wrong) {
     port_.add("path", path);
     if (model_ != g4_model) port_.add("model", std::string(model_.word));
-    const bool is_read = is_recording(path) ? read_recording(path) : read_bytes(path);
+    const bool is_read = wrong                ? fail(*wrong)
+                         : is_recording(path) ? read_recording(path)
+                                              : read_bytes(path);
     splitter_.finish(to_);
     survey_.finish();
     if (!is_read || measured_.tally().arrivals.bytes() == 0) {
@@ -53,8 +55,6 @@ class file_run {
     auto opened = recording_reader::open(path, {.is_cancelled = log_.options().is_cancelled});
     if (!opened) return fail(opened.error());
     recording_reader& reader = *opened;
-    const auto wrong = problem_with_model(log_.options().model, &reader.model(), "the recording");
-    if (wrong) return fail(*wrong);
     const auto read = reader.for_each([this](const recorded_item& item) {
       take(item);
       return !is_cancelled();
@@ -71,8 +71,10 @@ class file_run {
       device_.frequency = device->frequency;
       if (device->sample_rate) device_.sample_rate_hz = to_hz(*device->sample_rate);
       if (device->recognised) {
+        recognition seen_as = *device->recognised;
+        if (std::exchange(seen_as.model, &model_) != &model_) seen_as.by = known_by::user;
         if (!port_.remark.empty()) port_.remark += " ";
-        port_.remark += contradictions_of(*device->recognised);
+        port_.remark += contradictions_of(seen_as);
       }
     }
     seconds_ = static_cast<double>(detail::saturating_sub(last_ns_, reader.first_ns())) / 1e9;
@@ -235,24 +237,22 @@ class file_run {
   double seconds_ = 0.0;
 };
 
-/// As which model the lidar of a recording was read, if it is not the one of the recording; else null.
-const model* read_as_in(const std::string& path) {
-  if (!is_recording(path)) return nullptr;
-  const auto opened = recording_reader::open(path);
-  if (!opened || !opened->device() || !opened->device()->recognised) return nullptr;
-  return opened->device()->recognised->model;
-}
-
 }  // namespace
 
 void examine_file(const std::string& source, stage_log& log) {
-  const model* which = log.options().model;
-  if (which == nullptr) {
-    which = model_of_source(source, log.options().is_cancelled).value_or(nullptr);
-    if (const model* const used = read_as_in(path_of_source(source))) which = used;
+  const diagnostic_options& options = log.options();
+  const std::string path = path_of_source(source);
+  result<const model*> which = options.model;
+  // Bytes that cannot be read as the model that is named are examined all the same.
+  if (options.model == nullptr || is_recording(path)) {
+    which = model_of_source({.device = source,
+                             .model = options.model,
+                             .insist_on_model = options.insist_on_model,
+                             .is_cancelled = options.is_cancelled});
   }
-  if (which == nullptr) which = &g4_model;  // the file has gone, or cannot be read
-  file_run(log, *which).run(path_of_source(source));
+  const model* const used = which.value_or(nullptr);
+  file_run(log, used != nullptr ? *used : g4_model)
+      .run(path, which ? std::nullopt : std::optional(which.error()));
 }
 
 }  // namespace g4lidar

@@ -56,12 +56,13 @@ class kept_recognition {
     return what_.model;
   }
 
-  /// For the recording of `from`, if there is one: what contradicts the model, if something does.
+  /// For the recording of `from`, if there is one: what contradicts the model, if something does, or that it is guessed.
   void record(connector& from) const noexcept {
     recording_hook* const hook = recording_hook_of(from);
     if (hook == nullptr) return;
     try {
-      if (!contradictions_of(get()).empty()) hook->recognised(get());
+      const bool is_guessed = what_.by == known_by::samples || what_.by == known_by::nothing;
+      if (is_guessed || !contradictions_of(get()).empty()) hook->recognised(get());
     } catch (const std::bad_alloc&) {
       return;  // the recording is without it
     }

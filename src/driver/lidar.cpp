@@ -109,11 +109,11 @@ result<lidar> lidar::open(std::string_view device, const lidar_options& options)
 result<lidar> lidar::open(std::unique_ptr<connector> from, const lidar_options& options) {
   const connector_traits behind = from->traits();
   const model* const stated = behind.recognised.model;
-  if (const auto wrong = problem_with_model(options.model, stated, "the source")) {
+  if (const auto wrong = problem_with_model(options, behind.recognised, "the source")) {
     return tl::unexpected(*wrong);
   }
   lidar_options used = options;
-  if (stated != nullptr) used.model = stated;
+  if (used.model == nullptr) used.model = stated;
   if (behind.recognised.is_silent && behind.answers) used.listen_only = true;
   if (used.model == nullptr) used.model = &g4_model;
   const option_users users = behind.answers ? live | port : recording | raw_file | pipe;
@@ -125,7 +125,10 @@ result<lidar> lidar::open(std::unique_ptr<connector> from, const lidar_options& 
     return tl::unexpected(with_candidates(*wrong, behind.recognised.candidates));
   }
   g4lidar::recognition known = behind.recognised;
-  if (options.model != nullptr && stated == nullptr) known.by = known_by::user;
+  if (options.model != nullptr && (stated == nullptr || *stated != *options.model)) {
+    known.by = known_by::user;
+    known.candidates = {};
+  }
   auto made = std::make_unique<driver>(std::move(from), used, known);
   if (auto opened = made->open(); !opened) return tl::unexpected(opened.error());
   return lidar(std::move(made));

@@ -63,7 +63,6 @@ constexpr option_users any_file = recording | raw_file;
 /// The options that not every source can use.
 constexpr std::array option_rows{
     row("baud", live, [](auto& of) -> auto& { return of.baud; }),
-    row("insist_on_model", live, [](auto& of) -> auto& { return of.insist_on_model; }),
     row("listen_only", live, [](auto& of) -> auto& { return of.listen_only; }),
     row("leave_dtr", live, [](auto& of) -> auto& { return of.leave_dtr; }),
     row("probe_all_ports", port, [](auto& of) -> auto& { return of.probe_all_ports; }),
@@ -123,15 +122,24 @@ lidar_options without_others(lidar_options options, option_users users) {
   return options;
 }
 
-std::optional<error> problem_with_model(const model* given, const model* stated,
+std::optional<error> problem_with_model(const lidar_options& options, const recognition& stated,
                                         std::string_view whose) {
-  if (given == nullptr || stated == nullptr || *given == *stated) return std::nullopt;
+  const model* const given = options.model;
+  if (given == nullptr || stated.model == nullptr || *given == *stated.model) return std::nullopt;
+  if (stated.by == known_by::nothing) return std::nullopt;
+  const std::size_t size = sample_size(stated.model->samples.layout);
+  const std::size_t given_size = sample_size(given->samples.layout);
+  const bool is_sure = stated.by != known_by::samples && !options.insist_on_model;
+  if (size == given_size && !is_sure) return std::nullopt;
   std::string subject = "model: ";
-  subject.append(given->word)
-      .append(", and ")
-      .append(whose)
-      .append(" states ")
-      .append(stated->word);
+  subject.append(given->word).append(", and ").append(whose).append(" states ");
+  subject += stated.model->word;
+  if (size != given_size) {
+    subject.append(", samples of ").append(std::to_string(size));
+    subject.append(" bytes, not of ").append(std::to_string(given_size));
+  } else if (stated.by == known_by::recording) {
+    subject.append("; ").append(given->word).append("! insists on it (option insist_on_model)");
+  }
   return error(task::opening, problem::bad_option, subject);
 }
 

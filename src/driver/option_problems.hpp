@@ -9,12 +9,15 @@
 
 #include "g4lidar/error.hpp"
 #include "g4lidar/lidar_options.hpp"
+#include "g4lidar/recognition.hpp"
 #include "g4lidar/transport/connector.hpp"
 
 namespace g4lidar {
 
-/// With the model that is given, where `whose` states another one ("the recording"). Nothing if they agree, or one is null.
-[[nodiscard]] std::optional<error> problem_with_model(const model* given, const model* stated,
+/// With the model that is given, where `whose` states another one ("the source"): its samples have another size, or it is
+/// sure of its model, and the user does not insist. Nothing if they agree, or one is null. *Allocates.*
+[[nodiscard]] std::optional<error> problem_with_model(const lidar_options& options,
+                                                      const recognition& stated,
                                                       std::string_view whose);
 /// With the settings, which depend on the model; null: of a G4. *Pure.*
 [[nodiscard]] std::optional<error> problem_with_settings(const lidar_options& options) noexcept;

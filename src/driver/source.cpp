@@ -68,18 +68,32 @@ search_options known_of(const lidar_options& options, const model* named) {
           .is_cancelled = options.is_cancelled};
 }
 
-#if defined(G4LIDAR_HAS_SIM)
-/// To the port of a simulated lidar, which it owns.
-class simulated_connector final : public forwarding_connector {
+/// To a source that states its model, or for which its user does.
+class stated_connector : public forwarding_connector {
  public:
-  simulated_connector(std::unique_ptr<connector> inner, sim::simulated_source of)
-      : forwarding_connector(std::move(inner)), of_(std::move(of)) {}
+  stated_connector(std::unique_ptr<connector> inner, const model& which, known_by by)
+      : forwarding_connector(std::move(inner)), model_(&which), by_(by) {}
 
   [[nodiscard]] connector_traits traits() const noexcept override {
     connector_traits known = forwarding_connector::traits();
-    known.recognised = {.model = &model_of(of_), .by = known_by::recording};
+    known.recognised.model = model_;
+    known.recognised.by = by_;
+    known.recognised.candidates = {};
     return known;
   }
+
+ private:
+  const model* model_;
+  known_by by_;
+};
+
+#if defined(G4LIDAR_HAS_SIM)
+/// To the port of a simulated lidar, which it owns.
+class simulated_connector final : public stated_connector {
+ public:
+  simulated_connector(std::unique_ptr<connector> inner, sim::simulated_source of)
+      : stated_connector(std::move(inner), model_of(of), known_by::recording), of_(std::move(of)) {}
+
   [[nodiscard]] const sim::simulated_source& source() const noexcept { return of_; }
 
   [[nodiscard]] static const model& model_of(const sim::simulated_source& of) noexcept {
@@ -105,13 +119,21 @@ result<std::unique_ptr<connector>> connect_simulated(const lidar_options& option
 }
 #endif
 
-/// `from`, or an error if it states another model than the name; null: the name has none.
+/// With a model that is given, and another one in the name.
+std::optional<error> problem_with_name(const lidar_options& options, const model* in_name) {
+  return problem_with_model(options, {.model = in_name, .by = known_by::user}, "the name");
+}
+
+/// `from`, read as the model of the options, or an error if it cannot be.
 result<std::unique_ptr<connector>> of_model(result<std::unique_ptr<connector>> from,
-                                            const model* named) {
-  if (!from) return from;
-  const auto wrong = problem_with_model(named, (*from)->traits().recognised.model, "the recording");
-  if (wrong) return tl::unexpected(*wrong);
-  return from;
+                                            const lidar_options& options) {
+  if (!from || options.model == nullptr) return from;
+  const recognition stated = (*from)->traits().recognised;
+  if (const auto wrong = problem_with_model(options, stated, "the source")) {
+    return tl::unexpected(*wrong);
+  }
+  if (*stated.model == *options.model) return from;
+  return std::make_unique<stated_connector>(*std::move(from), *options.model, known_by::user);
 }
 
 }  // namespace
@@ -151,26 +173,33 @@ result<const model*> model_in_source(std::string_view name) {
   return failure(task::opening, problem::bad_option, "model: " + why_no_model(word));
 }
 
-result<const model*> model_of_source(std::string_view name,
-                                     const std::function<bool()>& is_cancelled) {
+result<const model*> model_of_source(const lidar_options& options) {
+  const std::string_view name = options.device;
   const std::string path = path_of_source(name);
   const source_kind kind = kind_of_source(name);
-  const auto stated = model_in_source(name);
-  if (!stated) return stated;
+  const auto in_name = model_in_source(name);
+  if (!in_name) return in_name;
+  if (const auto wrong = problem_with_name(options, *in_name)) return tl::unexpected(*wrong);
+  const model* const wanted = *in_name != nullptr ? *in_name : options.model;
   if (kind == source_kind::raw_bytes) {
-    return *stated != nullptr ? *stated : &model_of_bytes(path);
+    if (wanted == nullptr) return &model_of_bytes(path);
+    const auto wrong = problem_with_bytes(path, *wanted);
+    if (wrong && wrong->detail() == error_detail::other_samples) return tl::unexpected(*wrong);
+    return wanted;
   }
 #if defined(G4LIDAR_HAS_SIM)
   if (kind == source_kind::simulated) {
     const auto read = sim::parse_setup(name);
-    const auto* const wanted = std::get_if<sim::setup>(&read);
-    const model* const named = wanted != nullptr ? model_named(wanted->model) : nullptr;
+    const auto* const setup = std::get_if<sim::setup>(&read);
+    const model* const named = setup != nullptr ? model_named(setup->model) : nullptr;
     return named != nullptr ? named : &g4_model;
   }
 #endif
-  if (kind != source_kind::recording) return *stated;
-  return recording_reader::open(path, {.is_cancelled = is_cancelled})
-      .map([](const recording_reader& of) { return &of.model(); });
+  if (kind != source_kind::recording) return wanted;
+  lidar_options known = options;
+  known.model = wanted;
+  return of_model(replay::open(path, {}, options.is_cancelled), known)
+      .map([](const auto& of) { return of->traits().recognised.model; });
 }
 
 result<std::unique_ptr<connector>> connector_for(const lidar_options& options) {
@@ -182,14 +211,12 @@ result<std::unique_ptr<connector>> connector_for(const lidar_options& options, b
   const source_kind kind = kind_of_source(options.device);
   const auto named = model_in_source(options.device);
   if (!named) return tl::unexpected(named.error());
-  if (const auto wrong = problem_with_model(options.model, *named, "the name")) {
-    return tl::unexpected(*wrong);
-  }
+  if (const auto wrong = problem_with_name(options, *named)) return tl::unexpected(*wrong);
   const model* const wanted = *named != nullptr ? *named : options.model;
   lidar_options known = options;
   known.model = wanted;
   if (wanted == nullptr && kind == source_kind::simulated) {
-    known.model = model_of_source(options.device).value_or(nullptr);
+    known.model = model_of_source(options).value_or(nullptr);
   }
   if (const auto wrong = problem_with_users(options, users_of(kind, path)))
     return tl::unexpected(*wrong);
@@ -198,7 +225,7 @@ result<std::unique_ptr<connector>> connector_for(const lidar_options& options, b
   if (wrong) return tl::unexpected(*wrong);
   switch (kind) {
     case source_kind::recording:
-      return of_model(replay::open(path, options.playback, options.is_cancelled), *named);
+      return of_model(replay::open(path, options.playback, options.is_cancelled), known);
     case source_kind::raw_bytes:
       if (wanted != nullptr) {
         if (const auto other = problem_with_bytes(path, *wanted)) return tl::unexpected(*other);

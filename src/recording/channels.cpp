@@ -6,6 +6,7 @@
 #include "g4lidar/message/ros_messages.hpp"
 #include "g4lidar/recording/raw_bytes.hpp"
 #include "messages.hpp"
+#include "metadata.hpp"
 
 namespace g4lidar::mcap {
 namespace {

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: MIT
 // The transport and the connector of a file that is played.
 #include <cerrno>
+#include <cstddef>
 #include <new>
+#include <optional>
 #include <utility>
+#include <vector>
 
 #include "g4lidar/recording/replay.hpp"
 #include "played_file.hpp"
@@ -36,9 +39,24 @@ class file_transport final : public transport {
   std::shared_ptr<played_file> of_;
 };
 
+}  // namespace
+
+std::vector<const model*> candidates_of(const recorded_device& device) {
+  std::vector<const model*> all;
+  if (device.read_as() == nullptr || device.candidates.none()) return all;
+  all.push_back(device.read_as());
+  for (std::size_t at = 0; at < models.size(); ++at) {
+    if (device.candidates[at] && &models[at] != all.front()) all.push_back(&models[at]);
+  }
+  return all;
+}
+
+namespace {
+
 class file_connector final : public connector, public recording_hook {
  public:
-  explicit file_connector(std::shared_ptr<played_file> of) noexcept : of_(std::move(of)) {}
+  explicit file_connector(std::shared_ptr<played_file> of)
+      : of_(std::move(of)), candidates_(candidates_of(of_->device())) {}
 
   [[nodiscard]] result<std::unique_ptr<transport>> connect() noexcept override {
     if (!of_->take_connection()) {
@@ -67,15 +85,19 @@ class file_connector final : public connector, public recording_hook {
   [[nodiscard]] played_file* file() const noexcept { return of_.get(); }
 
  private:
-  /// What contradicted when it was recorded, contradicts now.
+  /// What contradicted, or was not known, when it was recorded, does now.
   [[nodiscard]] recognition read_as() const noexcept {
-    recognition known = of_->device().recognised.value_or(recognition{});
-    known.model = &of_->items().source().model();
-    known.by = of_->items().source().recognised_by();
+    const item_source& source = of_->items().source();
+    recognition known = of_->device().recognised.value_or(recognition{.by = known_by::recording});
+    const bool is_guessed = known.by == known_by::samples || known.by == known_by::nothing;
+    known.model = &source.model();
+    if (source.recording() != nullptr && !is_guessed) known.by = known_by::recording;
+    known.candidates = candidates_;
     return known;
   }
 
   std::shared_ptr<played_file> of_;
+  std::vector<const model*> candidates_;
 };
 
 }  // namespace
@@ -91,9 +113,9 @@ played_file* file_of(connector& from) noexcept {
   }
   return nullptr;
 }
-const recording_reader* replay::reader_of(const connector& from) noexcept {
-  const auto* const played = dynamic_cast<const file_connector*>(&from);
-  return played == nullptr ? nullptr : played->file()->items().source().recording();
+const recording_reader* replay::reader_of(connector& from) noexcept {
+  const played_file* const played = file_of(from);
+  return played == nullptr ? nullptr : played->items().source().recording();
 }
 
 }  // namespace g4lidar

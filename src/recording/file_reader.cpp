@@ -96,6 +96,7 @@ result<void> recording_reader::file_reader::check() {
 /// By the summary.
 void recording_reader::file_reader::read_summary() {
   mcap::read_summary(*chunks_, [this](opcode kind, field_reader record) { take(kind, record); });
+  is_device_settled_ = device_.has_value();
 }
 
 /// The same where there is no summary.
@@ -124,7 +125,7 @@ void recording_reader::file_reader::take(opcode kind, field_reader record) {
   }
   if (kind != opcode::metadata) return;
   const std::string_view name = record.take_text();
-  if (name == mcap::device_metadata) device_ = mcap::device_of(record);
+  if (name == mcap::device_metadata && !is_device_settled_) device_ = mcap::device_of(record);
   if (name == mcap::digest_metadata) digest_ = mcap::digest_of(record, last_ns_);
 }
 

@@ -11,6 +11,7 @@
 #include "chunk_source.hpp"
 #include "g4lidar/recording/reader.hpp"
 #include "messages.hpp"
+#include "metadata.hpp"
 
 namespace g4lidar {
 
@@ -25,7 +26,11 @@ class recording_reader::file_reader {
   [[nodiscard]] result<std::optional<recorded_item>> next() noexcept;
   [[nodiscard]] const std::optional<recorded_device>& device() const noexcept { return device_; }
   [[nodiscard]] const std::optional<recorded_digest>& digest() const noexcept { return digest_; }
-  [[nodiscard]] const g4lidar::model& model() const noexcept { return channels_.model(); }
+  /// As its driver has read it at last, where that is not what it was opened as.
+  [[nodiscard]] const g4lidar::model& model() const noexcept {
+    const g4lidar::model* const last = device_ ? device_->read_as() : nullptr;
+    return last != nullptr ? *last : channels_.model();
+  }
   [[nodiscard]] std::int64_t first_ns() const noexcept { return first_ns_; }
   [[nodiscard]] std::int64_t last_ns() const noexcept { return last_ns_; }
   [[nodiscard]] const recording_damage& damage() const noexcept;
@@ -58,6 +63,7 @@ class recording_reader::file_reader {
   bytes records_;  // of the block, not read yet
   mcap::found_channels channels_;
   std::optional<recorded_device> device_;
+  bool is_device_settled_ = false;  // by the summary, which has its last state
   std::optional<recorded_digest> digest_;
   mutable recording_damage damage_;
   std::uint64_t bytes_skipped_ = 0;            // in chunks

@@ -17,6 +17,7 @@
 #include "g4lidar/wall_clock.hpp"
 #include "mcap_file.hpp"
 #include "messages.hpp"
+#include "metadata.hpp"
 #include "numbered_path.hpp"
 #include "packer.hpp"
 #include "scan_ranges.hpp"

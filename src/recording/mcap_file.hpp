@@ -15,6 +15,7 @@
 #include "crc32.hpp"
 #include "g4lidar/error.hpp"
 #include "messages.hpp"
+#include "metadata.hpp"
 #include "new_file.hpp"
 #include "record_text.hpp"
 

@@ -6,15 +6,11 @@
 #include <cstdint>
 #include <optional>
 #include <span>
-#include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include "g4lidar/core/bytes.hpp"
 #include "g4lidar/motion.hpp"
-#include "g4lidar/recording/digest.hpp"
-#include "g4lidar/recording/recorded_device.hpp"
 #include "g4lidar/recording/recorded_event.hpp"
 #include "g4lidar/scan.hpp"
 #include "record_text.hpp"
@@ -37,24 +33,6 @@ struct recorded_bytes {
 [[nodiscard]] std::optional<stamped_odometry> odometry_from(bytes message) noexcept;
 /// A view of `message`; nothing if it is invalid, or of an unknown kind.
 [[nodiscard]] std::optional<recorded_event> event_from(bytes message) noexcept;
-
-/// A map of strings to strings, as in metadata.
-using word_map = std::vector<std::pair<std::string, std::string>>;
-void put_map(record_text& out, const word_map& words);
-/// The value of this name; empty if there is none.
-[[nodiscard]] std::string word_in(field_reader map, std::string_view name);
-
-inline constexpr std::string_view device_metadata = "g4lidar.device";
-inline constexpr std::string_view digest_metadata = "g4lidar.digest";
-/// The version of the computation of points from bytes. It increases with each change that gives
-/// other points: digests of points of different versions cannot be compared. A recording without
-/// one has version 1.
-inline constexpr std::string_view points_version = "6";
-[[nodiscard]] word_map words_of(const recorded_device& device);
-/// Missing or invalid fields are not known.
-[[nodiscard]] recorded_device device_of(field_reader& map);
-/// The digests of a file, and the time of its last item.
-[[nodiscard]] recorded_digest digest_of(field_reader& map, std::int64_t& last_ns);
 
 /// Longer names of transports are cut to this.
 inline constexpr std::size_t longest_name = 255;

@@ -38,8 +38,6 @@ class item_source {
   [[nodiscard]] virtual std::int64_t last_ns() noexcept = 0;
   /// What sent the bytes. Valid as long as this.
   [[nodiscard]] virtual const g4lidar::model& model() const noexcept = 0;
-  /// From what model() is known.
-  [[nodiscard]] virtual known_by recognised_by() const noexcept { return known_by::recording; }
   /// Null: raw bytes, which have neither events nor times of a device.
   [[nodiscard]] virtual const recording_reader* recording() const noexcept { return nullptr; }
 
@@ -95,6 +93,9 @@ class item_rounds {
 };
 
 class played_file;
+
+/// Of what was guessed, the model as which it is read first; else empty.
+[[nodiscard]] std::vector<const model*> candidates_of(const recorded_device& device);
 
 /// The player of a file.
 class file_player final : public player {

@@ -18,7 +18,9 @@
 #include <vector>
 
 #include "byte_survey.hpp"
+#include "discovery/model_choice.hpp"
 #include "format.hpp"
+#include "g4lidar/core/model_choice.hpp"
 #include "g4lidar/core/packet.hpp"
 #include "g4lidar/core/stream_parser.hpp"
 #include "g4lidar/detail/saturating.hpp"
@@ -122,8 +124,10 @@ class pipe_transport final : public transport {
 /// Returns its transport once.
 class pipe_connector final : public connector {
  public:
-  pipe_connector(std::unique_ptr<pipe_transport> port, const model& which, known_by by)
-      : port_(std::move(port)), model_(&which), by_(by) {}
+  pipe_connector(std::unique_ptr<pipe_transport> port, const recorded_device& about)
+      : port_(std::move(port)),
+        recognised_(about.recognised.value_or(recognition{})),
+        candidates_(candidates_of(about)) {}
 
   [[nodiscard]] result<std::unique_ptr<transport>> connect() noexcept override {
     if (port_ == nullptr) return failure(task::opening, problem::end_of_input);
@@ -133,13 +137,15 @@ class pipe_connector final : public connector {
   [[nodiscard]] bool pause(std::int64_t) noexcept override { return true; }
   void wake() noexcept override {}
   [[nodiscard]] connector_traits traits() const noexcept override {
-    return {.answers = false, .recognised = {.model = model_, .by = by_}};
+    connector_traits all{.answers = false, .recognised = recognised_};
+    all.recognised.candidates = candidates_;
+    return all;
   }
 
  private:
   std::unique_ptr<pipe_transport> port_;
-  const model* model_;
-  known_by by_;
+  recognition recognised_;
+  std::vector<const model*> candidates_;
 };
 
 /// The bytes of a file: their times are counted from samples.
@@ -148,7 +154,7 @@ class counted_items final : public item_source {
   /// Of the file behind `fd` from `at` on, whose first sample was measured at `wall_ns`.
   counted_items(std::shared_ptr<const owned_fd> fd, off_t at, std::string name,
                 std::uint32_t sample_rate_hz, std::int64_t wall_ns, std::int64_t to_ns,
-                std::function<bool()> is_cancelled, const g4lidar::model& which, known_by by)
+                std::function<bool()> is_cancelled, const g4lidar::model& which)
       : fd_(std::move(fd)),
         file_begin_(at),
         name_(std::move(name)),
@@ -156,8 +162,7 @@ class counted_items final : public item_source {
         wall_ahead_ns_(wall_ns - file_begin_ns),
         to_ns_(detail::saturating_add(file_begin_ns, to_ns)),
         is_cancelled_(std::move(is_cancelled)),
-        model_(&which),
-        by_(by) {}
+        model_(&which) {}
 
   [[nodiscard]] result<std::optional<recorded_item>> next() noexcept override {
     while (true) {
@@ -185,14 +190,13 @@ class counted_items final : public item_source {
   [[nodiscard]] std::int64_t last_ns() noexcept override {
     if (!last_ns_) {
       counted_items all(fd_, file_begin_, name_, static_cast<std::uint32_t>(rate_hz_), 0, never_ns,
-                        is_cancelled_, *model_, by_);
+                        is_cancelled_, *model_);
       for (auto piece = all.find_piece(); piece && !piece->empty();) piece = all.find_piece();
       last_ns_ = all.now_ns_;
     }
     return *last_ns_;
   }
   [[nodiscard]] const g4lidar::model& model() const noexcept override { return *model_; }
-  [[nodiscard]] known_by recognised_by() const noexcept override { return by_; }
 
  private:
   /// Up to the end of the next packet, whose samples have been measured by then: no part of it arrives
@@ -247,7 +251,6 @@ class counted_items final : public item_source {
   std::optional<std::int64_t> last_ns_;
   std::int64_t samples_ = 0;
   const g4lidar::model* model_;
-  known_by by_;
   stream_parser parser_{model_->samples};
   std::vector<std::uint8_t> buffer_ = std::vector<std::uint8_t>(65'536);
   off_t read_ = 0;          // of the file
@@ -256,9 +259,24 @@ class counted_items final : public item_source {
   std::size_t end_ = 0;
 };
 
-known_by basis_of(const recognised_model& found) noexcept {
-  if (found.is_usual()) return known_by::samples;
-  return found.basis == recognised_by::number ? known_by::number : known_by::nothing;
+recorded_device about(const recognised_model& found) {
+  const model& which = *found.which;
+  if (!found.is_usual()) {
+    const bool is_stated = found.basis == recognised_by::number;
+    return {.recognised = recognition{
+                .model = &which, .by = is_stated ? known_by::number : known_by::nothing}};
+  }
+  const std::size_t size = sample_size(which.samples.layout);
+  auto all = models_of_size({.sample_bytes = size, .sample_rate_hz = found.rate_hz});
+  std::erase_if(all, [&](const model* row) {
+    return !may_send(*row, size, found.basis == recognised_by::flags);
+  });
+  return {.recognised = recognition{.model = &which, .by = known_by::samples},
+          .candidates = set_of(all)};
+}
+
+recorded_device about(const model& named) {
+  return {.recognised = recognition{.model = &named, .by = known_by::user}};
 }
 
 }  // namespace
@@ -284,10 +302,10 @@ result<std::unique_ptr<connector>> open_raw_bytes(const std::string& name,
   if (!is_known || !S_ISREG(file.st_mode)) {
     auto port = std::make_unique<pipe_transport>(std::move(fd), std::move(title));
     if (which != nullptr)
-      return std::make_unique<pipe_connector>(std::move(port), *which, known_by::user);
+      return std::make_unique<pipe_connector>(std::move(port), about(*which));
     const auto found = port->recognise(is_cancelled);
     if (!found) return tl::unexpected(found.error());
-    return std::make_unique<pipe_connector>(std::move(port), *found->which, basis_of(*found));
+    return std::make_unique<pipe_connector>(std::move(port), about(*found));
   }
   const off_t at = std::max<off_t>(::lseek(fd.get(), 0, SEEK_CUR), 0);
   recognised_model found{which};
@@ -302,10 +320,11 @@ result<std::unique_ptr<connector>> open_raw_bytes(const std::string& name,
       std::make_shared<const owned_fd>(std::move(fd)), at, title,
       sample_rate_hz.value_or(first_rate_hz(sent_by)),
       file.st_mtim.tv_sec * second_ns + file.st_mtim.tv_nsec, options.to_ns,
-      std::move(is_cancelled), sent_by, which != nullptr ? known_by::user : basis_of(found));
+      std::move(is_cancelled), sent_by);
   if (auto moved = items->seek(options.from_ns); !moved) return tl::unexpected(moved.error());
   return connect_to(std::make_shared<played_file>(std::move(items), title, options,
-                                                  recorded_device{}, std::move(waits)));
+                                                  which != nullptr ? about(*which) : about(found),
+                                                  std::move(waits)));
 }
 
 }  // namespace g4lidar

@@ -27,7 +27,9 @@ class recorded_transport final : public forwarding_transport {
         into_(&into) {
     follow_wall_clock();
     if (played != nullptr) {
-      into.device(played->device());
+      recorded_device known = played->device();
+      known.recognised.reset();  // the driver records as which model it reads it now
+      into.device(known);
       return;
     }
     recorded_event opened{.what = recorded_event::kind::opened, .time_ns = now_ns()};
@@ -123,7 +125,7 @@ class recorded_connector final : public forwarding_connector,
     if (is_same) return;  // after a reconnect
     recognised_ = what;
     recognised_->candidates = {};  // which are valid as long as the lidar
-    into_->device({.recognised = recognised_});
+    into_->device({.recognised = recognised_, .candidates = set_of(what.candidates)});
   }
 
   [[nodiscard]] std::optional<recorded_event> next_event() noexcept override {
@@ -194,7 +196,7 @@ class recording_switch::observer {
     if (to_ != nullptr) to_->event(what);
   }
   void device(const recorded_device& known) noexcept {
-    if (known.recognised) recognised_ = known.recognised;
+    if (known.recognised) recognised_ = known;
     if (to_ != nullptr) to_->device(known);
   }
   void set_wall_clock(std::int64_t ahead_ns) noexcept {
@@ -207,7 +209,7 @@ class recording_switch::observer {
     to_ = &to;
     if (wall_ahead_ns_) to.set_wall_clock(*wall_ahead_ns_);
     to.event(state_.as_event(latest_ns_));
-    if (recognised_) to.device({.recognised = recognised_});
+    if (recognised_) to.device(*recognised_);
     return true;
   }
   void off() noexcept { to_ = nullptr; }
@@ -220,7 +222,7 @@ class recording_switch::observer {
   mcap::transport_state state_;
   std::int64_t latest_ns_ = 0;
   std::optional<std::int64_t> wall_ahead_ns_;
-  std::optional<recognition> recognised_;
+  std::optional<recorded_device> recognised_;
   recording_writer* to_ = nullptr;  // null: off
 };
 

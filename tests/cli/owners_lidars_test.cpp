@@ -211,6 +211,59 @@ TEST_F(OwnersLidar, WhatContradictsTheModelStandsInItsRecording) {
   EXPECT_THAT(run({"info", "--json", walk}).out, HasSubstr(R"("contradictions":"")"));
 }
 
+/// Its bytes did not name its model: who knows it names it when the recording is read.
+TEST_F(OwnersLidar, AGuessedModelOfARecordingMayBeNamedLater) {
+  struct guessed {
+    std::vector<std::string> served;
+    const char* usual;
+    const char* right;
+    const char* wrong;  // another size of samples
+    const char* name;
+  };
+  const std::vector<guessed> all{
+      {{"--model", "x3"}, "x2", "x3", "t-mini!", "X3"},
+      {{"--model", "t-mini-plus", "--device", "model_id=153"},
+       "t-mini-pro",
+       "t-mini-plus",
+       "g4!",
+       "T-mini Plus"}};
+  const std::string walk = path("walk.mcap");
+  for (const guessed& each : all) {
+    SCOPED_TRACE(each.right);
+    serve(each.served);
+    ASSERT_EQ(run({"record", "-n", "8", "--force", "-o", walk, port_}).code, 0);
+    EXPECT_THAT(run({"info", "--json", walk}).out,
+                AllOf(HasSubstr(std::string(R"("model":")") + each.usual),
+                      HasSubstr(std::string("\"") + each.right + "\"")));
+    const outcome info = run({"info", "--model", each.right, walk});
+    EXPECT_EQ(info.code, 0) << info.err;
+    EXPECT_THAT(info.out, HasSubstr(std::string("model       ") + each.name + "\n"));
+    EXPECT_THAT(run({"doctor", "--json", "--model", each.right, walk}).out,
+                Not(HasSubstr("read as a T-mini Pro")));
+    for (const char* const verb : {"scan", "decode", "replay"}) {
+      const outcome done = run({verb, "--model", each.right, walk});
+      EXPECT_EQ(done.code, 0) << verb << done.err;
+      EXPECT_THAT(done.out + done.err, Not(HasSubstr("read as a T-mini Pro"))) << verb;
+      const outcome wrong = run({verb, "--model", each.wrong, walk});
+      EXPECT_EQ(wrong.code, 2) << verb << wrong.err;
+      EXPECT_THAT(wrong.err, HasSubstr("bytes, not of")) << verb;
+    }
+    const std::string again = path("again.mcap");
+    ASSERT_EQ(run({"record", walk, "--model", each.right, "--force", "-o", again}).code, 0);
+    EXPECT_THAT(run({"info", again}).out, HasSubstr(std::string("model       ") + each.name));
+    for (const std::string& file : {walk, again}) {
+      EXPECT_EQ(run({"replay", "--verify", file}).code, 0) << file;
+    }
+  }
+  ASSERT_EQ(run({"record", "-n", "3", "sim:", "--force", "-o", walk}).code, 0);
+  const outcome refused = run({"scan", "--model", "g5", walk});
+  EXPECT_EQ(refused.code, 2);
+  EXPECT_THAT(refused.err, HasSubstr("g5! insists on it"));
+  const outcome insists = run({"scan", "--model", "g5!", walk});
+  EXPECT_EQ(insists.code, 0);
+  EXPECT_THAT(insists.err, HasSubstr("the number 5, that of a G4. It is read as a G5"));
+}
+
 TEST_F(OwnersLidar, TheUserMayInsistOnTheModel) {
   serve({"--model", "g4"});
   const outcome refused = run({"scan", "-n", "2", "--model", "g5", port_});

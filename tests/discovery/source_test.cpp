@@ -64,9 +64,9 @@ TEST_F(Source, NameOfADeviceMayNameItsModel) {
     EXPECT_EQ(kind_of_source(name), source_kind::device);
     EXPECT_EQ(path_of_source(name), device);
     EXPECT_EQ(model_in_source(name).value()->word, "x4");
-    EXPECT_EQ(model_of_source(name).value()->word, "x4");
+    EXPECT_EQ(model_of_source({.device = name}).value()->word, "x4");
     EXPECT_EQ(model_in_source(device).value(), nullptr);
-    EXPECT_EQ(model_of_source(device).value(), nullptr);
+    EXPECT_EQ(model_of_source({.device = device}).value(), nullptr);
   }
   EXPECT_EQ(model_in_source("/dev/ttyUSB0?model=x9").error().code(), problem::bad_option);
   EXPECT_EQ(path_of_source("sim:?model=x4"), "sim:?model=x4");

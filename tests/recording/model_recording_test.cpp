@@ -19,6 +19,7 @@
 #include "g4lidar/recording/reader.hpp"
 #include "g4lidar/recording/replay.hpp"
 #include "g4lidar/recording/writer.hpp"
+#include "g4lidar/source.hpp"
 #include "made_recording.hpp"
 #include "support/family_reference.hpp"
 
@@ -177,6 +178,53 @@ TEST_F(ModelRecording, AnotherModelThanTheRecordedOneIsRefused) {
   EXPECT_EQ(refused.error(), problem::bad_option);
   EXPECT_THAT(refused.error().message(), HasSubstr("model: x4, and the source states t-mini-pro"));
   EXPECT_EQ(lidar::open(path("made.mcap"), {.model = &g4_model}).error(), problem::bad_option);
+}
+
+/// The bytes do not name their model, so the user may, later too. Its samples must have this size.
+TEST_F(ModelRecording, AGuessedModelStaysAGuess) {
+  const std::string file = path("guessed.mcap");
+  recording_writer writer = made_writer(file);
+  {
+    auto from = recorded(*open_raw_bytes(raw_file(), {}, {}, {}, nullptr), writer);
+    ASSERT_TRUE(from) << from.error().message();
+    EXPECT_EQ((*from)->traits().recognised.by, known_by::samples);
+    static_cast<void>(played(lidar::open(std::move(*from))));
+  }
+  ASSERT_TRUE(writer.close());
+  const auto unnamed = lidar::open(file);
+  ASSERT_TRUE(unnamed);
+  const recognition found = unnamed->recognition();
+  EXPECT_EQ(found.by, known_by::samples);
+  EXPECT_EQ(found.model, t_mini_);
+  EXPECT_GE(found.candidates.size(), 2U);
+  EXPECT_EQ(found.candidates.front(), t_mini_);
+  EXPECT_THAT(found.candidates, testing::Contains(model_named("t-mini-plus")));
+  for (const std::string& suffix : {std::string(), std::string("?model=t-mini-plus")}) {
+    const bool is_in_name = !suffix.empty();
+    const model* const named = model_named("t-mini-plus");
+    auto other = lidar::open("file:" + file + suffix, {.model = is_in_name ? nullptr : named});
+    ASSERT_TRUE(other) << other.error().message();
+    EXPECT_EQ(other->recognition().model, named);
+    EXPECT_EQ(other->recognition().by, known_by::user);
+    expect_points(played(std::move(other)), stream_.points);
+    const auto wrong = lidar::open(file, {.model = &g4_model, .insist_on_model = true});
+    ASSERT_FALSE(wrong) << "its packets cannot be read so";
+    EXPECT_THAT(wrong.error().message(), HasSubstr("samples of 3 bytes, not of 2"));
+  }
+}
+
+TEST_F(ModelRecording, TheUserMayInsistOnAnotherModelOfASureOne) {
+  const std::string file = recorded_as(t_mini_);
+  const model* const other = model_named("t-mini-plus");
+  const auto refused = lidar::open(file, {.model = other});
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error(), problem::bad_option);
+  EXPECT_THAT(refused.error().message(), HasSubstr("t-mini-plus! insists on it"));
+  EXPECT_EQ(model_of_source({.device = file, .model = other}).error(), problem::bad_option);
+  const auto insists = lidar::open(file, {.model = other, .insist_on_model = true});
+  ASSERT_TRUE(insists) << insists.error().message();
+  EXPECT_EQ(insists->recognition().model, other);
+  EXPECT_EQ(insists->recognition().by, known_by::user);
 }
 
 TEST_F(ModelRecording, RawBytesOfAnotherModel) {

@@ -99,7 +99,7 @@ class G4LIDAR_API recording_hook {
   [[nodiscard]] virtual recorded_event_source* events() noexcept { return nullptr; }
   /// To be recorded: an event of the driver, after the last read and before the next one.
   virtual void event(const recorded_event& /*what*/) noexcept {}
-  /// To be recorded: something contradicts the model as which the lidar is read.
+  /// To be recorded: the model as which the lidar is read is guessed, or something contradicts it.
   virtual void recognised(const recognition& /*what*/) noexcept {}
 
  protected:

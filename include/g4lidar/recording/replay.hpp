@@ -32,7 +32,7 @@ class G4LIDAR_API replay {
 
   /// The reader of the recording that `from` plays, for its position and its damage; null if `from`
   /// is something else. Valid as long as `from`, or the lidar that owns it.
-  [[nodiscard]] static const recording_reader* reader_of(const connector& from) noexcept;
+  [[nodiscard]] static const recording_reader* reader_of(connector& from) noexcept;
 };
 
 }  // namespace g4lidar

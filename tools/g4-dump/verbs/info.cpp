@@ -15,8 +15,9 @@
 #include "g4lidar/core/session/model_requests.hpp"
 #include "g4lidar/lidar_options.hpp"
 #include "g4lidar/recording/reader.hpp"
+#include "g4lidar/recording/replay.hpp"
+#include "g4lidar/source.hpp"
 #include "io/command_source.hpp"
-#include "io/input.hpp"
 #include "io/output.hpp"
 #include "verbs/verbs.hpp"
 
@@ -36,26 +37,22 @@ struct device_facts {
   std::string_view why_unknown = "no answer";  ///< For settings that a lidar can be asked for.
 };
 
-device_facts facts_of_recording(const std::string& source) {
-  const auto reader = open_recording(path_of_source(source));
-  device_facts facts{.source = source, .why_unknown = "not recorded"};
-  facts.known_by = name_of(known_by::recording);
-  const auto& known = reader.device();
-  facts.candidates = {&reader.model()};
-  if (!known) return facts;
-  const auto& read = known->recognised;
-  if (read) {
-    facts.candidates = {read->model};
-    facts.known_by = name_of(read->by);
-  }
-  const std::uint8_t number = known->information.model;
-  const bool is_other = !g4lidar::detail::may_report(reader.model(), number);
-  facts.contradictions = contradictions_of(read.value_or(
-      recognition{.model = &reader.model(), .number = is_other ? number : std::uint8_t{0}}));
+device_facts facts_of_recording(const common_options& options) {
+  const auto from = value_of(connector_for(options_for(options, {})));
+  recognition found = from->traits().recognised;
+  device_facts facts{.source = options.source, .why_unknown = "not recorded"};
+  facts.known_by = name_of(found.by);
+  facts.candidates.assign(found.candidates.begin(), found.candidates.end());
+  if (facts.candidates.empty()) facts.candidates = {found.model};
+  const recorded_device known =
+      replay::reader_of(*from)->device().value_or(recorded_device{});
+  const std::uint8_t number = known.information.model;
+  if (!g4lidar::detail::may_report(*found.model, number)) found.number = number;
+  facts.contradictions = contradictions_of(found);
   report_contradictions(facts.contradictions);
-  if (known->information.model != 0) facts.information = known->information;
-  facts.settings = {known->sample_rate, known->frequency, known->motor,
-                    known->constant,    known->idle,      known->protection};
+  if (number != 0) facts.information = known.information;
+  facts.settings = {known.sample_rate, known.frequency, known.motor,
+                    known.constant,    known.idle,      known.protection};
   return facts;
 }
 
@@ -89,8 +86,7 @@ device_facts facts_of_device(const common_options& options) {
 device_facts facts_of(const common_options& options) {
   if (kind_of_source(options.source) != source_kind::recording) return facts_of_device(options);
   refuse_zero_angle(options, "info prints what was recorded");
-  static_cast<void>(model_of(options));  // which may contradict --model
-  return facts_of_recording(options.source);
+  return facts_of_recording(options);
 }
 
 /// The value as text, or why it is unknown.

@@ -35,7 +35,7 @@ void add_change(set_options& options, const std::string& word) {
 std::vector<setting_change> changes_of(const set_options& options) {
   const g4lidar::model* const named = options.expected.model;
   const g4lidar::model* const which =
-      named != nullptr ? named : g4lidar::model_of_source(options.source).value_or(nullptr);
+      g4lidar::model_of_source({.device = options.source, .model = named}).value_or(named);
   std::vector<setting_change> all;
   for (const std::string& word : options.changes) {
     const setting_change added = change_of(word, which);

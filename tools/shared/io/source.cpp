@@ -144,7 +144,6 @@ std::string alternatives_to(const g4lidar::model& found) {
 /// The options of the library that not every source can use, and the names by which the user gives them.
 constexpr std::array<std::pair<std::string_view, std::string_view>, 10> option_names{{
     {"baud", "--baud"},
-    {"insist_on_model", "--model MODEL!"},
     {"listen_only", "--listen"},
     {"leave_dtr", "--leave-dtr"},
     {"probe_all_ports", "--all-ports"},
@@ -226,7 +225,6 @@ void refuse_options_of_others(const common_options& options, const lidar_options
   const expected_device& expected = options.expected;
   lidar_options given{.device = options.source,
                       .probe_all_ports = expected.all_ports,
-                      .insist_on_model = expected.insists,
                       .listen_only = expected.listens,
                       .leave_dtr = expected.leaves_dtr,
                       .baud = expected.baud,
@@ -254,29 +252,20 @@ const g4lidar::model* model_of(const common_options& options,
   refuse_options_of_others(options);
   const source_kind kind = kind_of_source(options.source);
   const g4lidar::model* const named = named_model(options);
-  if (kind == source_kind::raw_bytes) {
+  if (kind == source_kind::raw_bytes && named == nullptr) {
     const std::string path = path_of_source(options.source);
-    if (named != nullptr) {
-      const auto wrong = problem_with_bytes(path, *named);
-      if (wrong && wrong->detail() == error_detail::other_samples) throw failure(*wrong);
-      return named;
-    }
     if (!is_regular_file(path)) return nullptr;
     const recognised_model found = recognised_in(path);
     if (shown == nullptr) report_model(found);
     if (shown != nullptr) *shown = found;
     return found.which;
   }
-  if (named != nullptr && kind != source_kind::recording) return named;
-  const auto stated = model_of_source(options.source, [] { return interrupt() != 0; });
+  const auto found = model_of_source({.device = options.source,
+                                      .model = named,
+                                      .insist_on_model = options.expected.insists,
+                                      .is_cancelled = [] { return interrupt() != 0; }});
   if (interrupt() != 0) throw interrupted();
-  const g4lidar::model* const found = value_of(stated);
-  if (found == nullptr) return nullptr;
-  if (named != nullptr && *named != *found) {
-    throw bad_value(fmt::format("--model: {}, and {} states {}", named->word,
-                                in_quotes(options.source), found->word));
-  }
-  return found;
+  return value_of(found);
 }
 
 lidar_options options_for(const common_options& options, lidar_options how) {
@@ -305,7 +294,7 @@ lidar_options options_for(const common_options& options, lidar_options how) {
     const bool is_other =
         found.number != 0 && found.model != nullptr &&
         std::ranges::find(found.model->ids, found.number) == found.model->ids.end();
-    if (!is_other) report_candidates(found.candidates);
+    if (!is_other && !is_raw) report_candidates(found.candidates);
     if (is_raw && found.model != nullptr) report_model(*found.model, found.by == known_by::samples);
     return inner ? inner(std::move(from)) : result<std::unique_ptr<connector>>(std::move(from));
   };
