@@ -4,6 +4,7 @@
 #include <string>
 #include <utility>
 
+#include "core/measured_rate.hpp"
 #include "inquiry.hpp"
 #include "lidar_search.hpp"
 

@@ -6,22 +6,12 @@
 #include <iterator>
 #include <span>
 
+#include "core/measured_rate.hpp"
 #include "g4lidar/core/model_choice.hpp"
 #include "transport/custom_baud.hpp"
 
 namespace g4lidar {
 namespace {
-
-/// The difference between what was measured and the nearest sample rate of the row, in percent.
-std::uint32_t rate_difference(const model& row, std::uint32_t hz) noexcept {
-  std::uint32_t least = hz == 0 ? 0 : 100;
-  for (const sample_rate_entry& own : row.rates.entries) {
-    if (own.hz == 0 || hz == 0) continue;
-    const std::uint32_t off = own.hz > hz ? own.hz - hz : hz - own.hz;
-    least = std::min(least, 100 * off / own.hz);
-  }
-  return least;
-}
 
 /// Moves those for which `is_last` is true behind the others; both keep their order. Returns the number of the others.
 /// Not std::stable_partition, which uses a deprecated function, as clang reports.
@@ -42,10 +32,6 @@ bool is_two_way(const model* row) noexcept { return row->link == link_kind::two_
 bool has_rate(const model& row, std::uint32_t baud) noexcept {
   return std::ranges::any_of(rates_of(row),
                              [baud](std::uint32_t own) { return is_tolerable(baud, own); });
-}
-
-bool may_measure(const model& row, std::uint32_t hz) noexcept {
-  return rate_difference(row, hz) <= 10 || is_seen_rate(row, hz);
 }
 
 bool is_surely_another(const model& stated, std::uint8_t number, std::uint32_t baud) noexcept {

@@ -52,9 +52,6 @@ struct lidar_signs {
   return std::span(row.bauds).first(row.bauds[1] != 0 ? 2 : 1);
 }
 
-/// Whether it measures so many samples a second at one of its rates, to a tenth. 0: not known, and true. *Pure.*
-[[nodiscard]] bool may_measure(const model& row, std::uint32_t hz) noexcept;
-
 /// Whether a lidar that reports `number` is another one than `stated`, and nothing else than the number will show it. Of a
 /// two-way one: a model with this number has samples of the same size, and this rate (0: not known). Of a one-way one: as
 /// one_way_other_than(). *Pure.*

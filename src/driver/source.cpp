@@ -13,6 +13,7 @@
 #include "g4lidar/recording/replay.hpp"
 #include "g4lidar/transport/forwarding.hpp"
 #include "option_problems.hpp"
+#include "recording/byte_survey.hpp"
 #include "recording/new_file.hpp"
 #if defined(G4LIDAR_HAS_SIM)
 #include <variant>
@@ -198,8 +199,9 @@ result<const model*> model_of_source(const lidar_options& options) {
   if (kind != source_kind::recording) return wanted;
   lidar_options known = options;
   known.model = wanted;
-  return of_model(replay::open(path, {}, options.is_cancelled), known)
-      .map([](const auto& of) { return of->traits().recognised.model; });
+  return of_model(replay::open(path, {}, options.is_cancelled), known).map([](const auto& of) {
+    return of->traits().recognised.model;
+  });
 }
 
 result<std::unique_ptr<connector>> connector_for(const lidar_options& options) {

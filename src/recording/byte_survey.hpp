@@ -24,4 +24,8 @@ namespace g4lidar {
 [[nodiscard]] std::optional<error> refusal_of(const stream_survey& seen, std::string_view title,
                                               const model* named = nullptr);
 
+/// Why the regular file at `path` cannot be read as of `named`: packets of which samples have another size (other_device), or
+/// no packets, but text or frames of another maker. Nothing if it can, or is not known. Allocates.
+[[nodiscard]] std::optional<error> problem_with_bytes(const std::string& path, const model& named);
+
 }  // namespace g4lidar

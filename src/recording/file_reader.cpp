@@ -96,7 +96,6 @@ result<void> recording_reader::file_reader::check() {
 /// By the summary.
 void recording_reader::file_reader::read_summary() {
   mcap::read_summary(*chunks_, [this](opcode kind, field_reader record) { take(kind, record); });
-  is_device_settled_ = device_.has_value();
 }
 
 /// The same where there is no summary.
@@ -125,7 +124,7 @@ void recording_reader::file_reader::take(opcode kind, field_reader record) {
   }
   if (kind != opcode::metadata) return;
   const std::string_view name = record.take_text();
-  if (name == mcap::device_metadata && !is_device_settled_) device_ = mcap::device_of(record);
+  if (name == mcap::device_metadata) device_ = mcap::device_of(record);
   if (name == mcap::digest_metadata) digest_ = mcap::digest_of(record, last_ns_);
 }
 
@@ -272,7 +271,9 @@ std::optional<recorded_item> recording_reader::file_reader::read() {
         break;
       }
       records_ = rest.rest();
-      take(kind, record);
+      // The summary has the last state of the device.
+      const bool is_older = kind == opcode::metadata && device_ && chunks_->summary_start() != 0;
+      if (!is_older) take(kind, record);
       if (kind != opcode::message) continue;
       auto item = item_in(record);
       if (!item) continue;

@@ -63,7 +63,6 @@ class recording_reader::file_reader {
   bytes records_;  // of the block, not read yet
   mcap::found_channels channels_;
   std::optional<recorded_device> device_;
-  bool is_device_settled_ = false;  // by the summary, which has its last state
   std::optional<recorded_digest> digest_;
   mutable recording_damage damage_;
   std::uint64_t bytes_skipped_ = 0;            // in chunks

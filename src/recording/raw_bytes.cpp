@@ -18,7 +18,7 @@
 #include <vector>
 
 #include "byte_survey.hpp"
-#include "discovery/model_choice.hpp"
+#include "core/measured_rate.hpp"
 #include "format.hpp"
 #include "g4lidar/core/model_choice.hpp"
 #include "g4lidar/core/packet.hpp"
@@ -263,14 +263,16 @@ recorded_device about(const recognised_model& found) {
   const model& which = *found.which;
   if (!found.is_usual()) {
     const bool is_stated = found.basis == recognised_by::number;
-    return {.recognised = recognition{
-                .model = &which, .by = is_stated ? known_by::number : known_by::nothing}};
+    return {.recognised = recognition{.model = &which,
+                                      .by = is_stated ? known_by::number : known_by::nothing}};
   }
   const std::size_t size = sample_size(which.samples.layout);
-  auto all = models_of_size({.sample_bytes = size, .sample_rate_hz = found.rate_hz});
-  std::erase_if(all, [&](const model* row) {
-    return !may_send(*row, size, found.basis == recognised_by::flags);
-  });
+  std::vector<const model*> all;
+  for (const model& row : models) {
+    const bool fits = may_send(row, size, found.basis == recognised_by::flags) &&
+                      (may_measure(row, found.rate_hz) || !may_measure(which, found.rate_hz));
+    if (fits) all.push_back(&row);
+  }
   return {.recognised = recognition{.model = &which, .by = known_by::samples},
           .candidates = set_of(all)};
 }
@@ -301,8 +303,7 @@ result<std::unique_ptr<connector>> open_raw_bytes(const std::string& name,
   std::string title = name == "-" ? "standard input" : name;
   if (!is_known || !S_ISREG(file.st_mode)) {
     auto port = std::make_unique<pipe_transport>(std::move(fd), std::move(title));
-    if (which != nullptr)
-      return std::make_unique<pipe_connector>(std::move(port), about(*which));
+    if (which != nullptr) return std::make_unique<pipe_connector>(std::move(port), about(*which));
     const auto found = port->recognise(is_cancelled);
     if (!found) return tl::unexpected(found.error());
     return std::make_unique<pipe_connector>(std::move(port), about(*found));
@@ -316,11 +317,11 @@ result<std::unique_ptr<connector>> open_raw_bytes(const std::string& name,
   }
   const model& sent_by = *found.which;
   auto waits = std::make_shared<waker>(real_system_calls());
-  auto items = std::make_unique<counted_items>(
-      std::make_shared<const owned_fd>(std::move(fd)), at, title,
-      sample_rate_hz.value_or(first_rate_hz(sent_by)),
-      file.st_mtim.tv_sec * second_ns + file.st_mtim.tv_nsec, options.to_ns,
-      std::move(is_cancelled), sent_by);
+  auto items =
+      std::make_unique<counted_items>(std::make_shared<const owned_fd>(std::move(fd)), at, title,
+                                      sample_rate_hz.value_or(first_rate_hz(sent_by)),
+                                      file.st_mtim.tv_sec * second_ns + file.st_mtim.tv_nsec,
+                                      options.to_ns, std::move(is_cancelled), sent_by);
   if (auto moved = items->seek(options.from_ns); !moved) return tl::unexpected(moved.error());
   return connect_to(std::make_shared<played_file>(std::move(items), title, options,
                                                   which != nullptr ? about(*which) : about(found),

@@ -220,13 +220,12 @@ TEST_F(OwnersLidar, AGuessedModelOfARecordingMayBeNamedLater) {
     const char* wrong;  // another size of samples
     const char* name;
   };
-  const std::vector<guessed> all{
-      {{"--model", "x3"}, "x2", "x3", "t-mini!", "X3"},
-      {{"--model", "t-mini-plus", "--device", "model_id=153"},
-       "t-mini-pro",
-       "t-mini-plus",
-       "g4!",
-       "T-mini Plus"}};
+  const std::vector<guessed> all{{{"--model", "x3"}, "x2", "x3", "t-mini!", "X3"},
+                                 {{"--model", "t-mini-plus", "--device", "model_id=153"},
+                                  "t-mini-pro",
+                                  "t-mini-plus",
+                                  "g4!",
+                                  "T-mini Plus"}};
   const std::string walk = path("walk.mcap");
   for (const guessed& each : all) {
     SCOPED_TRACE(each.right);

@@ -85,7 +85,7 @@ TEST(SearchAtAnyRate, DeviceThatAnswersWithTheNumberOfAOneWayLidar_IsReadByItsRa
   }
 }
 
-/// Nothing is sent, so its sample rate alone tells an X2 from a G4: also through a bridge, whose rate is not known.
+/// Nothing is sent, so only its sample rate is not that of a G4: also through a bridge, whose rate is not known.
 TEST(SearchAtAnyRate, OneWayLidarThatIsListenedTo_IsReadBySampleRate) {
   for (const std::uint32_t baud : {115'200U, 150'000U, 214'285U, 460'800U, 921'600U}) {
     SCOPED_TRACE(baud);

@@ -28,7 +28,6 @@ struct option {
 const std::vector<option>& of_lidars() {
   static const std::vector<option> all{
       {"baud", [](auto& of) { of.baud = 115'200; }},
-      {"insist_on_model", [](auto& of) { of.insist_on_model = true; }},
       {"listen_only", [](auto& of) { of.listen_only = true; }},
       {"leave_dtr", [](auto& of) { of.leave_dtr = true; }},
       {"sample_rate", [](auto& of) { of.sample_rate = sample_rate::khz_8; }},
@@ -59,6 +58,7 @@ const option of_raw_files{"raw_sample_rate_hz", [](auto& of) { of.raw_sample_rat
 const std::vector<option>& of_all() {
   static const std::vector<option> all{
       {"model", [](auto& of) { of.model = &g4_model; }},
+      {"insist_on_model", [](auto& of) { of.insist_on_model = true; }},
       {"partial_scans", [](auto& of) { of.partial_scans = true; }},
       {"zero_angle", [](auto& of) { of.zero_angle = zero_angle{.cdeg = 100}; }},
       {"batch", [](auto& of) { of.tuning.batch = 5ms; }},

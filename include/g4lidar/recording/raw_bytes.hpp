@@ -54,11 +54,6 @@ namespace g4lidar {
 /// The model that recognised_in() finds. Valid forever. Allocates.
 [[nodiscard]] G4LIDAR_API const model& model_of_bytes(const std::string& path);
 
-/// Why the regular file at `path` cannot be read as of `named`: packets of which samples have another size (other_device), or
-/// no packets, but text or frames of another maker. Nothing if it can, or is not known. Allocates.
-[[nodiscard]] G4LIDAR_API std::optional<error> problem_with_bytes(const std::string& path,
-                                                                  const model& named);
-
 /// What `data` is: text, frames of another maker, bytes that were changed on the way, also where some packets are left.
 /// Sentences for the user; empty: packets of a lidar, or not known. Allocates.
 [[nodiscard]] G4LIDAR_API std::string what_is(bytes data);

@@ -44,8 +44,7 @@ device_facts facts_of_recording(const common_options& options) {
   facts.known_by = name_of(found.by);
   facts.candidates.assign(found.candidates.begin(), found.candidates.end());
   if (facts.candidates.empty()) facts.candidates = {found.model};
-  const recorded_device known =
-      replay::reader_of(*from)->device().value_or(recorded_device{});
+  const recorded_device known = replay::reader_of(*from)->device().value_or(recorded_device{});
   const std::uint8_t number = known.information.model;
   if (!g4lidar::detail::may_report(*found.model, number)) found.number = number;
   facts.contradictions = contradictions_of(found);
