@@ -220,7 +220,7 @@ std::vector<stage_report> diagnose(std::string_view source, const diagnostic_opt
   }
   log.come_from(device);
   port_stages first(log);
-  auto opened = device.starts_with("tcp:") ? first.connect(device) : first.open(device);
+  auto opened = is_bridge(device) ? first.connect(device) : first.open(device);
   if (!opened) return std::move(log.stages());
   const bool is_named = !source.empty();
   live_run(std::move(opened), log, is_named).run();

@@ -14,6 +14,7 @@
 #include "g4lidar/core/response.hpp"
 #include "g4lidar/diagnostics/diagnostic_run.hpp"
 #include "g4lidar/filter.hpp"
+#include "g4lidar/transport/tcp_port.hpp"
 #include "reply_statistics.hpp"
 #include "stream_statistics.hpp"
 #include "survey/stream_survey.hpp"
@@ -28,7 +29,7 @@ class stage_log {
   /// The bytes come on this way, as far as it is known from the name of their source.
   void come_by(byte_path by) noexcept { by_ = by; }
   void come_from(std::string_view name) noexcept {
-    if (name.starts_with("tcp:")) by_ = byte_path::network;
+    if (is_bridge(name)) by_ = byte_path::network;
   }
   [[nodiscard]] byte_path by() const noexcept { return by_; }
   void report(stage_report done) {

@@ -8,12 +8,12 @@
 #include <string_view>
 
 #include "g4lidar/discovery.hpp"
+#include "g4lidar/transport/tcp_port.hpp"
 
 namespace g4lidar {
 
 inline constexpr std::string_view serial_prefix = "serial:";
 inline constexpr std::string_view usb_prefix = "usb:";
-inline constexpr std::string_view tcp_prefix = "tcp:";
 
 /// The name that is meant by one that names nothing: "/dev/ttyUSB0" by "ttyUSB0", "tcp:HOST:4000" by "udp:HOST:4000";
 /// empty if it is not known. Looks whether there is a file of this name. *Allocates.*

@@ -142,7 +142,7 @@ result<std::unique_ptr<transport>> system_connector::connect() noexcept {
 
 result<std::unique_ptr<transport>> system_connector::open_transport() {
   const std::string_view device = device_;
-  if (device.starts_with(tcp_prefix)) {
+  if (is_bridge(device)) {
     if (const auto wrong = misspelled(device)) return tl::unexpected(*wrong);
     tcp_options how;
     how.baud = baud_;

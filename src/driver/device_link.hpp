@@ -8,6 +8,7 @@
 
 #include "event_reader.hpp"
 #include "g4lidar/core/session.hpp"
+#include "g4lidar/transport/tcp_port.hpp"
 #include "g4lidar/transport/transport.hpp"
 
 namespace g4lidar {
@@ -32,12 +33,12 @@ class device_link {
         session_(times, which),
         cut_off_after_ns_(cut_off_after_ns),
         listens_(listens || which.link == link_kind::one_way),
-        is_bridged_(on != nullptr && is_bridge(*on)) {}
+        is_bridged_(on != nullptr && is_bridge(on->name())) {}
 
   /// Another transport: nothing is known about the device.
   void follow(transport& on) noexcept {
     on_ = &on;
-    is_bridged_ = is_bridge(on);
+    is_bridged_ = is_bridge(on.name());
     session_.reset();
     heard_ns_ = on.now_ns();
   }
@@ -109,9 +110,6 @@ class device_link {
   }
 
  private:
-  [[nodiscard]] static bool is_bridge(const transport& on) noexcept {
-    return on.name().starts_with("tcp:");
-  }
   [[nodiscard]] std::int64_t cut_off_ns() const noexcept {
     if (input_.held() == 0 || !awaits_answer()) return never_ns;
     return heard_ns_ + cut_off_after_ns_ * (is_bridged_ ? network_factor : 1);

@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "core/number_text.hpp"
-#include "discovery/port_words.hpp"
 #include "driver.hpp"
 #include "g4lidar/detail/enumerators.hpp"
 #include "g4lidar/source.hpp"
@@ -70,11 +69,11 @@ bool may_be_at_another_rate(const error& why, const lidar_options& options) {
   if (options.baud != 0) return false;
   if (why == problem::garbage) return true;
   // A lidar that sends would have been heard; with several rates it was searched before.
-  const bool is_bridge = path_of_source(options.device).starts_with(tcp_prefix);
+  const bool has_bridge = is_bridge(path_of_source(options.device));
   const model* const stated = model_in_source(options.device).value_or(nullptr);
   const model* const named = stated != nullptr ? stated : options.model;
   const bool waits = named != nullptr && named->link == link_kind::two_way && named->bauds[1] == 0;
-  return why == problem::silence && waits && !options.listen_only && !is_bridge;
+  return why == problem::silence && waits && !options.listen_only && !has_bridge;
 }
 
 }  // namespace

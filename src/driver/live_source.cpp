@@ -128,8 +128,7 @@ result<void> live_source::identified(const device_information& who) {
 
 /// Of the line; 0: behind a bridge, where nobody has named it.
 std::uint32_t live_source::known_baud() const noexcept {
-  const bool is_bridged = connection_.name().starts_with("tcp:");
-  return is_bridged ? options_.baud : connection_.on().baud();
+  return is_bridge(connection_.name()) ? options_.baud : connection_.on().baud();
 }
 
 /// Whether the number of another model ends it: nothing that the device will send can decide. A model that was stated is

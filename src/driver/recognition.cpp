@@ -6,6 +6,7 @@
 
 #include "core/number_text.hpp"
 #include "discovery/model_choice.hpp"
+#include "g4lidar/core/model_choice.hpp"
 #include "g4lidar/lidar_options.hpp"
 #include "survey/change_signs.hpp"
 
@@ -18,9 +19,7 @@ constexpr std::string_view please =
 std::string number_text(std::uint8_t number, const recognition& what) {
   const model& read_as = *what.model;
   std::string text = "The lidar reports the number " + std::to_string(number);
-  const auto with_number = [number](const model& row) {
-    return std::ranges::find(row.ids, number) != row.ids.end();
-  };
+  const auto with_number = [number](const model& row) { return has_number(row, number); };
   const auto* const owner = std::ranges::find_if(models, with_number);
   if (owner == models.end()) {
     text += ", which no known model has.";
@@ -54,7 +53,7 @@ std::string contradictions_of(const recognition& what) {
     if (!all.empty()) all += " ";
     all += sentence;
   };
-  if (what.number != 0 && std::ranges::find(what.model->ids, what.number) == what.model->ids.end())
+  if (what.number != 0 && !has_number(*what.model, what.number))
     add(number_text(what.number, what));
   const std::string one = std::string(article_of(*what.model)).append(" ").append(what.model->name);
   if (what.baud != 0 && !has_rate(*what.model, what.baud)) {

@@ -12,6 +12,7 @@
 #include "g4lidar/recording/raw_bytes.hpp"
 #include "g4lidar/recording/replay.hpp"
 #include "g4lidar/transport/forwarding.hpp"
+#include "g4lidar/transport/tcp_port.hpp"
 #include "option_problems.hpp"
 #include "recording/byte_survey.hpp"
 #include "recording/new_file.hpp"
@@ -50,7 +51,7 @@ named_parts divided(std::string_view name) {
 option_users users_of(source_kind kind, const std::string& path) {
   if (kind == source_kind::recording) return recording;
   if (kind == source_kind::simulated) return live;
-  if (kind == source_kind::device) return path.starts_with(tcp_prefix) ? live : live | port;
+  if (kind == source_kind::device) return is_bridge(path) ? live : live | port;
   struct stat found{};
   const bool is_there = (path == "-" ? ::fstat(0, &found) : ::stat(path.c_str(), &found)) == 0;
   const bool is_file = !is_there || S_ISREG(found.st_mode) || S_ISDIR(found.st_mode);

@@ -123,7 +123,7 @@ bool is_our_own(int system_errno) noexcept {
 result<std::unique_ptr<transport>> open_connection(std::string_view address,
                                                    const tcp_options& options,
                                                    const system_calls& calls) {
-  if (address.starts_with("tcp:")) address.remove_prefix(4);
+  if (is_bridge(address)) address.remove_prefix(tcp_prefix.size());
   if (address.starts_with("//")) address.remove_prefix(2);
   const auto wanted = parse(address);
   if (!wanted) {

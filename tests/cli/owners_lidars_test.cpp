@@ -190,7 +190,8 @@ TEST_F(OwnersLidar, WhatContradictsTheModelStandsInItsRecording) {
     serve(each.served);
     std::vector<std::string> words{"record", "-n", "8", "--force", "-o", walk, port_};
     words.insert(words.end(), each.options.begin(), each.options.end());
-    ASSERT_EQ(run(words).code, 0) << each.text;
+    const outcome recorded = run(words);
+    ASSERT_EQ(recorded.code, 0) << each.text << recorded.err;
     ASSERT_EQ(run({"record", walk, "--force", "-o", again}).code, 0) << each.text;
     for (const std::string& file : {walk, again}) {
       const outcome info = run({"info", file});

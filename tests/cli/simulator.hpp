@@ -31,6 +31,7 @@ class simulator {
  private:
   static std::vector<std::string> arguments(const std::string& link,
                                             const std::vector<std::string>& options) {
+    std::filesystem::remove(link);  // that of an earlier one, which was killed
     std::vector<std::string> all{"sim", "--link", link, "--log"};
     all.insert(all.end(), options.begin(), options.end());
     return all;

@@ -14,6 +14,13 @@
 
 namespace g4lidar {
 
+/// The names of sources behind a bridge begin so.
+inline constexpr std::string_view tcp_prefix = "tcp:";
+/// *Pure.*
+[[nodiscard]] constexpr bool is_bridge(std::string_view source) noexcept {
+  return source.starts_with(tcp_prefix);
+}
+
 /// How a connection is made.
 struct tcp_options {
   std::chrono::milliseconds connect_timeout{3000};  ///< For all addresses of the host together.
