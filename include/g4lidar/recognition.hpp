@@ -37,13 +37,15 @@ struct recognition {
   bool was_stopped = false;
   /// Whether its network bridge negotiates as telnet does: it doubles each byte FF, which damages packets.
   bool speaks_telnet = false;
+  /// Whether its packets have shown that samples have the size of the model, since the driver began to read them so.
+  bool has_shown_samples = false;
 };
 
 /// The name of how a model is known, for programs: "number". Valid forever. *Pure.*
 [[nodiscard]] G4LIDAR_API std::string_view name_of(known_by what) noexcept;
 
 /// What contradicts `what`, in sentences for the user: the device reports another number, or one that no known model
-/// has; its model is not known to have this baud rate; it should answer and does not; its bridge changes bytes. Empty: nothing does. *Allocates.*
+/// has; its model is not known to have this baud rate, which a number alone does not decide before packets come; it should answer and does not; its bridge changes bytes. Empty: nothing does. *Allocates.*
 [[nodiscard]] G4LIDAR_API std::string contradictions_of(const recognition& what);
 
 }  // namespace g4lidar

@@ -143,10 +143,13 @@ bool first_contact::recognise(const exchange& first) {
   const std::uint32_t baud = of_.link.port().baud();
   if (lidar.is_named) return !refuses_number(of_.log.options(), *lidar.which, who->model, baud);
   const std::size_t seen = lidar.was_scanning ? sample_size(lidar.which->samples.layout) : 0;
+  const layout_recogniser& heard = of_.link.survey().layout();
   lidar.candidates = models_of_answer({.baud = baud,
                                        .is_baud_certain = lidar.has_baud,
                                        .sample_bytes = seen,
                                        .id = who->model,
+                                       .sample_rate_hz = heard.rate_hz(),
+                                       .frequency_dhz = heard.frequency_dhz(),
                                        .answers = presence::yes},
                                       true);
   lidar.which = lidar.candidates.front();

@@ -94,6 +94,7 @@ bool reply_statistics::is_unknown(command code, const model& which) const {
 
 bool reply_statistics::has_mute_question(const model& which) const {
   if (answered() == 0) return false;
+  if (lacks_zero(which)) return true;
   return std::ranges::any_of(made_, [&](const exchange& one) {
     const auto is_same = [&](const exchange& other) { return other.asked == one.asked; };
     const auto is_heard = [&](const exchange& other) {
@@ -163,18 +164,16 @@ void reply_statistics::judge(stage_report& report, bool host_paused, const model
   if (sum.wrong > 0 && !is_held_up) report.find(diagnosis::answers_wrong);
   if (sum.twice > 0) report.find(diagnosis::answers_twice);
   if (sum.missing > 0 && !is_held_up) report.find(diagnosis::answers_missing);
-  const bool has_asked =
-      std::ranges::find(made_, command::zero_angle, &exchange::asked) != made_.end();
-  if (has_asked && answered() > 0 && has_request(which, request_kind::zero_angle) &&
-      !has_zero(which)) {
-    report.find(diagnosis::no_zero_angle);
-  }
+  if (!knows_less_ && lacks_zero(which)) report.find(diagnosis::no_zero_angle);
 }
 
-bool reply_statistics::has_zero(const model& which) const {
+bool reply_statistics::lacks_zero(const model& which) const {
+  const bool has_asked =
+      std::ranges::find(made_, command::zero_angle, &exchange::asked) != made_.end();
+  if (!has_asked || answered() == 0 || !has_request(which, request_kind::zero_angle)) return false;
   const bytes reply = usual(command::zero_angle);
   const auto heard = response_view::from(reply, which.samples.has_angle_replies);
-  return heard && zero_angle_of(*heard, which);
+  return !heard || !zero_angle_of(*heard, which);
 }
 
 void device_snapshot::take(const response_view& reply) {

@@ -62,8 +62,8 @@ class reply_statistics {
   [[nodiscard]] tally count(const model& which) const;
   /// A query that firmware, or a lidar whose number is not that of `which`, need not support, and without any reply.
   [[nodiscard]] bool is_unknown(command code, const model& which) const;
-  /// Whether the command 93 was answered with an angle.
-  [[nodiscard]] bool has_zero(const model& which) const;
+  /// Whether the command 93 was not answered with an angle.
+  [[nodiscard]] bool lacks_zero(const model& which) const;
   /// Differs from the most frequent reply to the same command.
   [[nodiscard]] bool is_odd(const exchange& one) const;
   /// The most frequent reply; empty if there is none.

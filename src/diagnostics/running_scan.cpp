@@ -95,13 +95,16 @@ void running_scan::received(const reading& what, bytes data) {
 void running_scan::follow_samples(bytes data) {
   if (!sizes_) return;
   sizes_->take(data);
-  const std::size_t size = sizes_->other();
+  const stream_samples seen = sizes_->other();
   if (sizes_->is_settled()) sizes_.reset();
   const auto fitting =
-      size == 0 ? std::vector<const model*>()
-                : models_that_fit({.sample_bytes = size,
-                                   .answers = which_->link == link_kind::two_way ? presence::yes
-                                                                                 : presence::no});
+      seen.bytes == 0
+          ? std::vector<const model*>()
+          : models_that_fit(
+                {.sample_bytes = seen.bytes,
+                 .sample_rate_hz = seen.rate_hz,
+                 .frequency_dhz = seen.frequency_dhz,
+                 .answers = which_->link == link_kind::two_way ? presence::yes : presence::no});
   if (fitting.empty()) return;
   read_as(*fitting.front());
   splitter_ = event_splitter(which_->samples);

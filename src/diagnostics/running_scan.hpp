@@ -60,7 +60,9 @@ class running_scan {
     return std::exchange(happened_.stall_ns, 0);
   }
   /// Whether many bytes have arrived that belong to nothing, also while no scan is wanted.
-  [[nodiscard]] bool has_garbage() const noexcept { return garbage_ > garbage_bytes(*which_); }
+  [[nodiscard]] bool has_garbage() const noexcept {
+    return garbage_ > garbage_bytes(*which_) && !(sizes_ && sizes_->is_other());
+  }
 
  private:
   /// Between two checks of the speed of the head.

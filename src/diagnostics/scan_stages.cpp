@@ -112,12 +112,18 @@ bool live_run::is_of_other_size() const {
 
 /// The number may be that of another model: its packets decide. Whether they are read in another way from here on.
 bool live_run::follow_samples() {
-  if (!is_of_other_size()) return false;
-  const std::size_t size = link_.survey().layout().sample_bytes();
-  auto fitting = models_that_fit({.baud = link_.port().baud(),
-                                  .is_baud_certain = lidar_.has_baud,
-                                  .sample_bytes = size,
-                                  .answers = presence::yes});
+  const layout_recogniser& seen = link_.survey().layout();
+  const std::size_t size = seen.sample_bytes();
+  // The sample rate of a revolution may decide.
+  constexpr std::uint32_t most_packets = 256;
+  const bool has_stated = seen.has_stated_all() || seen.votes(size) >= most_packets;
+  if (!is_of_other_size() || !has_stated) return false;
+  auto fitting = models_at_rate({.baud = link_.port().baud(),
+                                 .is_baud_certain = lidar_.has_baud,
+                                 .sample_bytes = size,
+                                 .sample_rate_hz = seen.rate_hz(),
+                                 .frequency_dhz = seen.frequency_dhz(),
+                                 .answers = presence::yes});
   if (fitting.empty()) return false;
   const std::string samples = "samples have " + std::to_string(size) + " bytes, as those of " +
                               one_of(*fitting.front()) + ": it is read as that one.";

@@ -6,8 +6,6 @@
 #include <iterator>
 #include <span>
 
-#include "core/measured_rate.hpp"
-#include "g4lidar/core/model_choice.hpp"
 #include "transport/custom_baud.hpp"
 
 namespace g4lidar {
@@ -60,9 +58,7 @@ std::vector<const model*> models_that_fit(const lidar_signs& seen) {
     }
     return found;
   };
-  const auto is_far_off = [&seen](const model* row) {
-    return !may_measure(*row, seen.sample_rate_hz);
-  };
+  const auto is_far_off = [&seen](const model* row) { return !may_measure(*row, seen); };
   // A number does not need an uncertain rate.
   std::vector<const model*> found = all_with(seen.is_baud_certain || seen.id == 0, true);
   const bool is_stated = seen.id != 0 || seen.ct_id_low_bits != 0;
@@ -91,20 +87,22 @@ std::vector<const model*> models_that_fit(const lidar_signs& seen) {
   return found;
 }
 
+std::vector<const model*> models_at_rate(const lidar_signs& seen) {
+  auto all = models_that_fit(seen);
+  const auto is_far_off = [&seen](const model* row) { return !may_measure(*row, seen); };
+  if (!std::ranges::all_of(all, is_far_off)) std::erase_if(all, is_far_off);
+  return all;
+}
+
 std::vector<const model*> models_of_size(const lidar_signs& seen) {
   lidar_signs known{.sample_bytes = seen.sample_bytes,
                     .sample_rate_hz = seen.sample_rate_hz,
+                    .frequency_dhz = seen.frequency_dhz,
                     .answers = seen.answers};
-  auto all = models_that_fit(known);
-  if (all.empty()) {
-    known.answers = presence::unknown;
-    all = models_that_fit(known);
-  }
-  const auto is_far_off = [&](const model* row) {
-    return !may_measure(*row, known.sample_rate_hz);
-  };
-  if (!std::ranges::all_of(all, is_far_off)) std::erase_if(all, is_far_off);
-  return all;
+  auto all = models_at_rate(known);
+  if (!all.empty()) return all;
+  known.answers = presence::unknown;
+  return models_at_rate(known);
 }
 
 std::vector<const model*> models_of_answer(lidar_signs seen, bool are_samples_certain) {
@@ -122,7 +120,7 @@ std::vector<const model*> models_of_answer(lidar_signs seen, bool are_samples_ce
 
 bool may_be_two_way(const lidar_signs& seen) {
   const std::vector<const model*> all = models_that_fit(seen);
-  const auto is_near = [&seen](const model* row) { return may_measure(*row, seen.sample_rate_hz); };
+  const auto is_near = [&seen](const model* row) { return may_measure(*row, seen); };
   if (std::ranges::any_of(all, is_near)) {
     return std::ranges::any_of(all,
                                [&](const model* row) { return is_near(row) && is_two_way(row); });

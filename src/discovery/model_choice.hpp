@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "g4lidar/core/model.hpp"
+#include "g4lidar/core/model_choice.hpp"
 
 namespace g4lidar {
 
@@ -25,7 +26,9 @@ struct lidar_signs {
   std::uint8_t id = 0;           ///< As it reported by a reply or after power-on; 0: not.
   std::uint8_t ct_id_low_bits =
       0;  ///< As its CT bytes state, in a revolution whose CRC fits; 0: not.
-  std::uint32_t sample_rate_hz = 0;      ///< As measured; 0: not.
+  std::uint32_t sample_rate_hz = 0;  ///< As measured; 0: not.
+  std::uint32_t frequency_dhz =
+      0;  ///< As zero packets report it, if the rate follows from it. See may_measure().
   presence answers = presence::unknown;  ///< Whether it answered a command.
 };
 
@@ -35,6 +38,9 @@ struct lidar_signs {
 /// otherwise. Models with the number as their usual one come before those that some devices report it of.
 /// Empty if there is none. *Allocates.*
 [[nodiscard]] std::vector<const model*> models_that_fit(const lidar_signs& seen);
+
+/// As models_that_fit(), and without those that do not measure so often, if another one does. *Allocates.*
+[[nodiscard]] std::vector<const model*> models_at_rate(const lidar_signs& seen);
 
 /// The models with samples of this size, whatever their numbers and baud rates; those that answer so, and those that
 /// measure so often, if there are any. Never empty for 0, 2, 3 and 4 bytes. *Allocates.*
@@ -57,6 +63,11 @@ struct lidar_signs {
 /// one_way_other_than(). *Pure.*
 [[nodiscard]] bool is_surely_another(const model& stated, std::uint8_t number,
                                      std::uint32_t baud) noexcept;
+
+/// Whether it has the sample rate that was seen. See may_measure(). *Pure.*
+[[nodiscard]] inline bool may_measure(const model& row, const lidar_signs& seen) noexcept {
+  return may_measure(row, seen.sample_rate_hz, seen.frequency_dhz);
+}
 
 /// Whether a two-way model may send such packets: one fits, and with the sample rate, unless only one-way
 /// models have that. *Allocates.*

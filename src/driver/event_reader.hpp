@@ -61,10 +61,12 @@ class event_reader {
   void become(sample_format format) noexcept { parser_ = stream_parser(format); }
   /// A stream begins whose samples should have this size: until they have, it is watched.
   void expect(std::size_t sample_bytes) noexcept { sizes_.emplace(sample_bytes); }
-  /// The size of the samples since expect(), if it is another one, and certain; else 0.
-  [[nodiscard]] std::size_t other_sample_bytes() const noexcept {
-    return sizes_ ? sizes_->other() : 0;
+  /// The samples since expect(), if they have another size. See sample_size_watch::other().
+  [[nodiscard]] stream_samples other() const noexcept {
+    return sizes_ ? sizes_->other() : stream_samples{};
   }
+  /// Whether packets since expect() have shown that the size is right.
+  [[nodiscard]] bool is_as_expected() const noexcept { return !sizes_; }
   /// See stream_parser::set_layout().
   void set_layout(sample_layout layout) noexcept { parser_.set_layout(layout); }
 

@@ -2,7 +2,6 @@
 // As which model a driver reads its source.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <new>
 #include <optional>
@@ -13,6 +12,7 @@
 #include "g4lidar/device_information.hpp"
 #include "g4lidar/recognition.hpp"
 #include "g4lidar/recording/recorded_event.hpp"
+#include "sample_size_watch.hpp"
 
 namespace g4lidar {
 
@@ -43,16 +43,21 @@ class kept_recognition {
   void set_bridge(bool speaks_telnet, bool again) noexcept {
     what_.speaks_telnet = speaks_telnet || (what_.speaks_telnet && !again);
   }
-  /// Its samples have another size than those of its number: the model is one that has, at this rate. Null: there is
-  /// none. *Allocates.*
-  [[nodiscard]] const model* follow(std::size_t sample_bytes, std::uint32_t baud, bool answers) {
-    auto fitting = models_that_fit({.baud = baud,
-                                    .sample_bytes = sample_bytes,
-                                    .answers = answers ? presence::yes : presence::no});
+  /// Packets of the model have come.
+  void confirm() noexcept { what_.has_shown_samples = true; }
+  /// Its samples have another size than those of its number: the model is one that has, at this baud rate and with this
+  /// sample rate. Null: there is none. *Allocates.*
+  [[nodiscard]] const model* follow(const stream_samples& seen, std::uint32_t baud, bool answers) {
+    auto fitting = models_at_rate({.baud = baud,
+                                   .sample_bytes = seen.bytes,
+                                   .sample_rate_hz = seen.rate_hz,
+                                   .frequency_dhz = seen.frequency_dhz,
+                                   .answers = answers ? presence::yes : presence::no});
     if (fitting.empty()) return nullptr;
     candidates_ = std::move(fitting);
     what_.model = candidates_.front();
     what_.by = known_by::samples;
+    what_.has_shown_samples = true;
     return what_.model;
   }
 

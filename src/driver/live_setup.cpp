@@ -126,7 +126,6 @@ result<void> live_driver::finish_step(const outcome& done) {
   if (is_doubtful(finished, done) && setup_.repeat_start(options_, is_start)) return {};
   if (!is_start) return {};
   stage_ = live_stage::scanning;
-  if (pipeline_.decoder().lacks_zero()) report(lidar_event::kind::no_zero_angle);
   setup_.clear();
   if (reconnection_.end()) report(lidar_event::kind::reconnected);
   return {};

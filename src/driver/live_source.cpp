@@ -47,6 +47,7 @@ result<void> live_source::advance(std::int64_t deadline_ns) {
       break;
   }
   if (auto done = round(deadline_ns); !done) return break_off(done.error());
+  judge_model();
   if (const auto why = std::exchange(refused_, std::nullopt)) return tl::unexpected(*why);
   return {};
 }
@@ -144,22 +145,34 @@ bool live_source::refuses(const device_information& who) const noexcept {
 
 /// The samples have another size than those of the model: they decide, unless the user does.
 result<void> live_source::follow_samples() {
-  const std::size_t size = pipeline_.input().other_sample_bytes();
-  if (size == 0) return {};
+  const stream_samples seen = pipeline_.input().other();
+  if (seen.bytes == 0) return {};
   const bool answers = !options_.listen_only && options_.model->link == link_kind::two_way;
   try {
-    const model* const found = recognised_.is_stated()
-                                   ? nullptr
-                                   : recognised_.follow(size, connection_.on().baud(), answers);
+    const model* const found =
+        recognised_.is_stated() ? nullptr : recognised_.follow(seen, known_baud(), answers);
     if (found == nullptr)
-      return tl::unexpected(other_samples_error(size, *options_.model, connection_.name()));
+      return tl::unexpected(other_samples_error(seen.bytes, *options_.model, connection_.name()));
     options_.model = found;
     stream_.become(*found);
+    is_model_judged_ = false;
   } catch (const std::bad_alloc&) {
     return failure(task::reading, problem::system, connection_.name(), ENOMEM);
   }
   report(lidar_event::kind::other_number);
   return {};
+}
+
+/// Once for each start, when the packets have shown that they are those of the model: what is reported before is wrong
+/// where it becomes another one.
+void live_source::judge_model() noexcept {
+  if (stage_ != live_stage::scanning) {
+    is_model_judged_ = false;
+  } else if (!is_model_judged_ && pipeline_.input().is_as_expected()) {
+    is_model_judged_ = true;
+    recognised_.confirm();
+    if (pipeline_.decoder().lacks_zero()) report(lidar_event::kind::no_zero_angle);
+  }
 }
 
 result<void> live_source::can_read() const noexcept {

@@ -84,6 +84,9 @@ class live_source : public scan_source {
   [[nodiscard]] bool refuses(const device_information& who) const noexcept;
   [[nodiscard]] std::uint32_t known_baud() const noexcept;
   [[nodiscard]] result<void> hang_up();
+  void judge_model() noexcept;
+
+  bool is_model_judged_ = false;  // by packets since the start
 };
 
 }  // namespace g4lidar

@@ -53,7 +53,7 @@ class reader_view {
   void show(const recognition& now) {
     const auto facts_follow_from = [](const recognition& from) {
       return std::tuple(from.model, from.by, from.number, from.baud, from.is_silent,
-                        from.speaks_telnet);
+                        from.speaks_telnet, from.has_shown_samples);
     };
     if (facts_follow_from(now) == facts_follow_from(shown_)) return;
     shown_ = now;

@@ -56,7 +56,9 @@ std::string contradictions_of(const recognition& what) {
   if (what.number != 0 && !has_number(*what.model, what.number))
     add(number_text(what.number, what));
   const std::string one = std::string(article_of(*what.model)).append(" ").append(what.model->name);
-  if (what.baud != 0 && !has_rate(*what.model, what.baud)) {
+  const bool may_change =
+      what.by == known_by::number && !what.has_shown_samples && !what.was_stopped;
+  if (what.baud != 0 && !may_change && !has_rate(*what.model, what.baud)) {
     const auto rates =
         list_of(rates_of(*what.model), [](auto baud) { return std::to_string(baud); });
     add("The line runs at " + std::to_string(what.baud) + " baud, " + one + " usually at " + rates +

@@ -165,13 +165,13 @@ result<void> replay_player::advance(std::int64_t deadline_ns) {
 
 /// The bytes are read as those of another model if their samples have another size, as the driver did that recorded them.
 void replay_player::follow_samples() {
-  const std::size_t size = pipeline_.input().other_sample_bytes();
+  const stream_samples seen = pipeline_.input().other();
   const recognition now = recognised_.get();
-  if (size == 0 || now.by == known_by::user) return;
+  if (seen.bytes == 0 || now.by == known_by::user) return;
   const std::uint32_t baud = connection_.on().baud();
-  const model* const found = recognised_.follow(size, baud, now.model->link == link_kind::two_way);
+  const model* const found = recognised_.follow(seen, baud, now.model->link == link_kind::two_way);
   if (found == nullptr) return;
-  stated_.identity = identity_reader(*found, true);
+  stated_.follow(*found);
   sample_rate_hz_ = first_rate_hz(*found);
   pipeline_.become(*found, baud);
   report(lidar_event::kind::other_number);

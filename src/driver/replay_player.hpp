@@ -64,6 +64,10 @@ class replay_player final : public scan_source {
     bool is_zero_judged = false;                ///< Whether it is known when points begin.
 
     void record(recorded_event made);
+    void follow(const model& which) noexcept {
+      identity = identity_reader(which, true);
+      is_zero_judged = false;
+    }
   };
   /// Of the recorded connection.
   struct losses {

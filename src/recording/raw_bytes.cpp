@@ -18,7 +18,6 @@
 #include <vector>
 
 #include "byte_survey.hpp"
-#include "core/measured_rate.hpp"
 #include "format.hpp"
 #include "g4lidar/core/model_choice.hpp"
 #include "g4lidar/core/packet.hpp"

@@ -41,6 +41,7 @@ void change_signs::take(bytes input) noexcept {
     take_telnet(byte);
     take_utf8(byte);
     take_header_byte(byte);
+    taken_.take(byte);
     last_ = {byte, last_[0]};
   }
 }
@@ -125,10 +126,14 @@ change_signs::control_set change_signs::missing() const noexcept {
     const bool is_pair = count_of(one) == 0 && count_of(other) == 0;
     absent.set(one, is_pair).set(other, is_pair);
   }
-  if (absent.count() * fewest >= surely) return absent;
-  absent.reset();
-  absent.set(carriage_return, is_replaced(carriage_return, headers_.with_0a));
-  absent.set(tab, is_replaced(tab, headers_.with_20));
+  control_set taken = taken_.found(absent);
+  const bool is_flow = taken.test(xon) || taken.test(xoff);
+  taken.set(xon, is_flow).set(xoff, is_flow);
+  // Of those that short packets do not show, each must be absent surely.
+  if ((absent & ~taken).count() * fewest >= surely) return absent;
+  absent = taken;
+  if (is_replaced(carriage_return, headers_.with_0a)) absent.set(carriage_return);
+  if (is_replaced(tab, headers_.with_20)) absent.set(tab);
   return absent;
 }
 

@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "g4lidar/core/bytes.hpp"
+#include "taken_bytes.hpp"
 
 namespace g4lidar {
 
@@ -30,11 +31,12 @@ enum class stream_change : std::uint8_t {
 class change_signs {
  public:
   /// Control characters that are examined: all below 20.
-  using control_set = std::bitset<32>;
+  using control_set = taken_bytes::control_set;
 
   /// Adds bytes of the stream, in order.
   void take(bytes input) noexcept;
-  /// What has changed bytes that are not text. A stream of some kilobytes shows it.
+  /// What has changed bytes that are not text. A stream of some kilobytes shows it; flow control, some
+  /// short packets.
   [[nodiscard]] stream_change change() const noexcept;
   /// The control characters of change() that did not arrive.
   [[nodiscard]] control_set missing() const noexcept;
@@ -83,6 +85,7 @@ class change_signs {
     std::uint64_t with_0a = 0;  // of these, by their lower byte
     std::uint64_t with_20 = 0;
   } headers_;
+  taken_bytes taken_;
 };
 
 /// What it is and what to do, in sentences; of one that takes characters without them. Empty: none. Valid forever. *Pure.*

@@ -187,6 +187,22 @@ TEST(LayoutRecogniser, OfSeveralModelsTheSampleRateDecides) {
   EXPECT_EQ(at(714, 0), "x2");       // the frequency is not reported
 }
 
+/// A number that contradicts the samples states that the usual model is not certain: then the sample rate decides.
+TEST(LayoutRecogniser, ANumberOfAnotherSize_LetsTheSampleRateDecide) {
+  const auto at = [](unsigned samples, unsigned dhz, unsigned id) {
+    room announced("t-mini");
+    if (id != 0) announced.reply = information_of(id);
+    announced.samples = samples;
+    announced.stated.dhz = dhz;
+    return std::string(recognised(announced.of(4)).word);
+  };
+  EXPECT_EQ(at(714, 70, 5), "g2");            // 4998 per second, and the number of a G4
+  EXPECT_EQ(at(571, 70, 5), "t-mini-pro");    // 3997
+  EXPECT_EQ(at(714, 70, 0), "t-mini-pro");    // nothing contradicts the usual model
+  EXPECT_EQ(at(714, 0, 5), "t-mini-pro");     // the rate is not stated
+  EXPECT_EQ(at(2000, 120, 5), "t-mini-pro");  // 24,000: no model
+}
+
 TEST(LayoutRecogniser, InformationInCt_OfARevolutionWhoseCrcFits) {
   room informed("x4");
   informed.stated = {4, 70};

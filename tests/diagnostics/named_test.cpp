@@ -10,6 +10,7 @@
 #include <set>
 #include <string>
 #include <string_view>
+#include <tuple>
 
 #include "diagnostics/doctor_bench.hpp"
 #include "g4lidar/core/model.hpp"
@@ -83,6 +84,23 @@ TEST(DoctorOfANamedModel, NumberOfAnotherOne_IsJudgedAsLidarOpenDoes) {
   }
   EXPECT_GT(refused, 10);
   EXPECT_GT(warned, 50);
+}
+
+/// Nothing is found that follows from the model of the number alone: its samples show another one.
+TEST(DoctorOfAnUnnamedModel, WhatFollowsFromItsNumberAlone_IsNotFound) {
+  for (const auto& [word, number, read_as] : {std::tuple("t-mini-pro", 100, "a T-mini Pro"),
+                                              {"g2", 5, "a G2"},
+                                              {"t-mini-plus-sh", 101, "a T-mini Plus SH"},
+                                              {"tg15", 150, "a TG15"}}) {
+    sim::device_options options;
+    ASSERT_TRUE(sim::use_model(options, word));
+    options.info.model = static_cast<std::uint8_t>(number);
+    sim::device simulated(sim::built_in_world(), options);
+    sim::virtual_clock clock;
+    const examined done = examine(simulated, clock, {});
+    EXPECT_EQ(done.diagnoses(), "other_number") << word << done;
+    EXPECT_NE(done.at(diagnostic_stage::motor).remark.find(read_as), std::string::npos) << done;
+  }
 }
 
 TEST(DoctorOfANamedModel, TheUserInsists_IsAWarning) {

@@ -64,12 +64,16 @@ TEST(RunningHealthy, HasNoDiagnosis_AndReportsItsMeasurements) {
 
 // The driver reads it by its samples, and so does the diagnosis: the number is all that is wrong.
 TEST(RunningHealthy, WithSamplesThatContradictItsNumber_HasNoOtherDiagnosis) {
-  use how;
-  ASSERT_TRUE(sim::use_model(how.device, "t-mini-plus-sh"));
-  how.numbered = model_named("t-mini-plus");
-  how.device.info.model = how.numbered->ids[0];
-  const seen found = watch(how);
-  EXPECT_EQ(found.diagnoses(), "other_number") << found;
+  for (const auto& [word, number] : {std::pair{"t-mini-plus-sh", "t-mini-plus"},
+                                     {"t-mini-pro", "tg15"},
+                                     {"t-mini-plus-sh", "tg30"}}) {
+    use how;
+    ASSERT_TRUE(sim::use_model(how.device, word));
+    how.numbered = model_named(number);
+    how.device.info.model = how.numbered->ids[0];
+    const seen found = watch(how);
+    EXPECT_EQ(found.diagnoses(), "other_number") << word << found;
+  }
 }
 
 TEST(RunningHealthy, OtherModels_HaveNoDiagnosis) {

@@ -145,6 +145,7 @@ TEST(ExtremeCore, Models) {
     use(one_way_other_than(which, byte));
     use(model_with_id(byte, any<link_kind>(random)));
     use(may_send(which, any<std::size_t>(random), true));
+    use(may_measure(which, any<std::uint32_t>(random)));
     use(with_firmware(g4_model, {byte, byte, byte, byte, {}}));
     const request wanted{any<request_kind>(random), any<std::uint16_t>(random)};
     use(has_request(which, wanted.what));

@@ -146,6 +146,34 @@ TEST(ChangeSigns, KnowTheUsualModeSoon) {
   EXPECT_EQ(seen_in(changed).change(), stream_change::cooked_line);
 }
 
+// The short packets show it before the absence of the two characters can be no chance.
+TEST(ChangeSigns, KnowFlowControlByShortPackets) {
+  for (const char* const word : {"g4", "x4", "t-mini-pro", "t-mini-plus-sh"}) {
+    for (const int seed : seeds(5)) {
+      const byte_list all = stream_of(*model_named(word), sim::built_in_world(),
+                                      static_cast<std::uint32_t>(seed), 22'000);
+      const change_signs seen = seen_in(without(all, {0x11, 0x13}));
+      EXPECT_EQ(seen.change(), stream_change::flow_control) << word << seed;
+      EXPECT_EQ(missing_in(seen), "17 19") << word << seed;
+    }
+  }
+}
+
+// A bridge drops any byte, in about every second packet.
+TEST(ChangeSigns, NoFalseAlarmWhereBytesAreDropped) {
+  for (const char* const word : {"g4", "x4", "t-mini-pro", "t-mini-plus-sh"}) {
+    for (const int seed : seeds(20)) {
+      const byte_list all = stream_of(*model_named(word), sim::built_in_world(),
+                                      static_cast<std::uint32_t>(seed), 22'000);
+      std::mt19937_64 random(static_cast<std::uint64_t>(seed));
+      const byte_list dropped = with_each(all, [&](std::uint8_t byte) {
+        return random() % 200 == 0 ? byte_list{} : byte_list{byte};
+      });
+      EXPECT_EQ(seen_in(dropped).change(), stream_change::none) << word << seed;
+    }
+  }
+}
+
 TEST(ChangeSigns, KnowTabsThatBecameBlanks) {
   std::size_t column = 0;
   const byte_list changed = with_each(g4_stream(), [&](std::uint8_t byte) {

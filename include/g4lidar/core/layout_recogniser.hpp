@@ -52,6 +52,8 @@ class layout_candidate {
   [[nodiscard]] constexpr std::uint32_t rate_hz() const noexcept {
     return span_64ths_ == 0 ? 0 : steps_ * turn_64ths * dhz_ / (10 * span_64ths_);
   }
+  /// The last frequency that a zero packet reported, in 0.1 Hz; 0: none has.
+  [[nodiscard]] constexpr std::uint32_t frequency_dhz() const noexcept { return dhz_; }
   /// Whether nothing is missing that other packets might state: a revolution was received without a gap; or the rate is
   /// known, and the CT bytes are all the same, so that they state nothing.
   [[nodiscard]] constexpr bool has_stated_all() const noexcept {
@@ -154,7 +156,8 @@ enum class recognised_by : std::uint8_t {
 /// with this number is taken first. Of several models with this number it is the one whose sample
 /// rate is nearest to that of the stream. Where nothing names it, it is the usual_model(), and basis()
 /// states so: 2-byte samples are a G4's, or an X2's where samples consist of flags alone; 3-byte
-/// samples are a T-mini Pro's, and 4-byte samples a T-mini Plus SH's. So a 2-byte sample in half or
+/// samples are a T-mini Pro's, and 4-byte samples a T-mini Plus SH's. Where a device information has a number
+/// of a model with samples of another size, or of none, it is the usual one that measures so often. So a 2-byte sample in half or
 /// whole millimetres is not recognised without a device information, and neither are 10 bits of
 /// intensity nor the correction of an SCL.
 class layout_recogniser {
@@ -194,6 +197,11 @@ class layout_recogniser {
   [[nodiscard]] constexpr std::uint32_t rate_hz() const noexcept {
     const detail::layout_candidate* const sent = decided();
     return sent == nullptr ? 0 : sent->rate_hz();
+  }
+  /// The frequency in 0.1 Hz from which rate_hz() follows, as it was reported. See true_frequency_dhz().
+  [[nodiscard]] constexpr std::uint32_t frequency_dhz() const noexcept {
+    const detail::layout_candidate* const sent = decided();
+    return sent == nullptr ? 0 : sent->frequency_dhz();
   }
   /// Whether more packets will hardly show more about the model than those that have come. False as long as the size of a
   /// sample is not decided.
@@ -241,7 +249,14 @@ class layout_recogniser {
       if (near.which != nullptr) return near;
     }
     const auto sends = [&](const model& row) { return may_send(row, size, has_flags); };
-    const model* const usual = usual_model(sends, usual_kind::of_its_layout);
+    const auto measures = [&](const model& row) {
+      return sends(row) && may_measure(row, sent->rate_hz(), sent->frequency_dhz());
+    };
+    // A number of another size states that it is none of the usual ones.
+    const model* const near =
+        sent->id() == 0 ? nullptr : usual_model(measures, usual_kind::of_its_layout);
+    const model* const usual =
+        near != nullptr ? near : usual_model(sends, usual_kind::of_its_layout);
     return {usual != nullptr ? usual : &g4_model, without_number};
   }
 

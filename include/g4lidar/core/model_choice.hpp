@@ -24,6 +24,23 @@ namespace g4lidar {
          (!has_flags || has_sample_flags(layout));
 }
 
+/// Whether it measures so many samples a second at one of its rates, to a tenth. 0: not known, and true.
+/// `reported_dhz`: of the zero packets from whose frequency, in 0.1 Hz, the rate follows, so that it is another one where
+/// the model means another frequency; 0: it is as it is. *Pure.*
+[[nodiscard]] constexpr bool may_measure(const model& row, std::uint32_t hz,
+                                         std::uint32_t reported_dhz = 0) noexcept {
+  const double is_times = reported_dhz == 0 ? 1.0
+                                            : true_frequency_dhz(row, double{1} * reported_dhz) /
+                                                  (double{1} * reported_dhz);
+  const double true_hz = is_times * hz;
+  if (hz == 0 || is_seen_rate(row, true_hz)) return true;
+  for (const sample_rate_entry& own : row.rates.entries) {
+    const double off = own.hz > true_hz ? own.hz - true_hz : true_hz - own.hz;
+    if (own.hz != 0 && 100.0 * off < 11.0 * own.hz) return true;
+  }
+  return false;
+}
+
 /// The model that is taken where the bytes are those of several: the usual one of those for which `fits` is
 /// true, else the first of them; null if there is none. `least`: of_its_layout where their baud rate is not
 /// known. Valid forever. *Pure.*

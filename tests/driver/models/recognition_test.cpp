@@ -2,8 +2,11 @@
 // Lidars that are not as the table has them: the device overrules the table, and its owner overrules both.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <chrono>
 #include <cstdint>
+#include <cstdlib>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -49,6 +52,13 @@ int times(lidar& of, lidar_event::kind what) {
   return count;
 }
 
+/// Within a tenth.
+bool has_sample_rate(const model& row, std::uint32_t hz) {
+  return std::ranges::any_of(row.rates.entries, [hz](const sample_rate_entry& own) {
+    return std::abs(static_cast<double>(own.hz) - hz) <= 0.1 * own.hz && own.hz != 0;
+  });
+}
+
 bool is_two_way(const model& row) { return row.link == link_kind::two_way; }
 
 /// All pairs of two-way models whose samples have different sizes, and whose motors start in the same way: at the latest after a few packets it is read as what it
@@ -76,6 +86,8 @@ TEST(Recognition, SamplesThatContradictTheNumber_Decide) {
       const recognition known = lidar->recognition();
       EXPECT_EQ(known.by, known_by::samples);
       EXPECT_EQ(sample_size(known.model->samples.layout), size);
+      EXPECT_TRUE(has_sample_rate(*known.model, to_hz(options_of(real).scanner.sample_rate)))
+          << known.model->word;
       EXPECT_EQ(known.number, number.ids[0]);
       EXPECT_EQ(times(*lidar, lidar_event::kind::other_number), 1);
       EXPECT_EQ(times(*lidar, lidar_event::kind::restarted), 0);
@@ -86,6 +98,67 @@ TEST(Recognition, SamplesThatContradictTheNumber_Decide) {
     }
   }
   EXPECT_GT(pairs, 50);
+}
+
+/// The number alone decides neither what the baud rate contradicts nor that points lack the offset of zero.
+TEST(Recognition, WhatFollowsFromAnUncertainModel_IsReportedOfTheRightOne) {
+  struct mixed_case {
+    const char* real;
+    const char* number;
+    int without_zero;  ///< How often it is reported: a G4 and a T-mini Plus are not asked for the offset.
+  };
+  for (const auto& [word, reported, without_zero] :
+       std::to_array<mixed_case>({{"t-mini-pro", "tg15", 0},
+                                  {"t-mini-plus-sh", "tg30", 0},
+                                  {"t-mini-pro", "g4", 0},
+                                  {"g2", "g4", 1},
+                                  {"tg15", "t-mini-plus", 1}})) {
+    SCOPED_TRACE(std::string(word).append(" as ").append(reported));
+    mixed_up on(*model_named(word), model_named(reported)->ids[0]);
+    auto lidar = on.open_as(*model_named(reported));
+    ASSERT_TRUE(lidar) << lidar.error().message();
+    EXPECT_EQ(contradictions_of(lidar->recognition()), "");
+    ASSERT_TRUE(lidar->start());
+    for (int i = 0; i < 3; ++i) ASSERT_TRUE(lidar->wait_scan(5s));
+    EXPECT_EQ(contradictions_of(lidar->recognition()).find(" baud"), std::string::npos)
+        << contradictions_of(lidar->recognition());
+    EXPECT_EQ(times(*lidar, lidar_event::kind::no_zero_angle), without_zero);
+    ASSERT_TRUE(lidar->stop());
+  }
+}
+
+/// One with the number of its model, and another baud rate: packets show that it is right.
+TEST(Recognition, AnotherBaudRateThanThatOfItsModel_IsReportedWhenPacketsHaveCome) {
+  const model& real = *model_named("tg15");
+  sim::device_options options = options_of(real);
+  options.baud = 230'400;
+  sim::virtual_clock clock;
+  sim::device device(sim::built_in_world(), options);
+  auto port = std::make_unique<sim::virtual_connector>(device, clock);
+  auto lidar = lidar::open(std::make_unique<numbered_connector>(std::move(port), real), {});
+  ASSERT_TRUE(lidar) << lidar.error().message();
+  EXPECT_EQ(contradictions_of(lidar->recognition()), "");
+  ASSERT_TRUE(lidar->start());
+  ASSERT_TRUE(lidar->wait_scan(5s));
+  EXPECT_EQ(contradictions_of(lidar->recognition()),
+            "The line runs at 230400 baud, a TG15 usually at 512000.");
+}
+
+/// It is not asked for its offset of zero.
+TEST(Recognition, ALidarThatIsListenedTo_LacksItsOffsetOfZero) {
+  for (const auto& [word, count] : {std::pair{"g2", 1}, {"tg15", 1}, {"g4", 0}, {"t-mini", 0}}) {
+    SCOPED_TRACE(word);
+    const model& real = *model_named(word);
+    sim::virtual_clock clock;
+    sim::device device(sim::built_in_world(), options_of(real),
+                       std::vector{sim::make_fault(sim::fault_kind::scanning)});
+    auto lidar = lidar::open(std::make_unique<sim::virtual_connector>(device, clock),
+                             {.model = &real, .listen_only = true});
+    ASSERT_TRUE(lidar) << lidar.error().message();
+    ASSERT_TRUE(lidar->start());
+    for (int i = 0; i < 3; ++i) ASSERT_TRUE(lidar->wait_scan(5s));
+    EXPECT_EQ(times(*lidar, lidar_event::kind::no_zero_angle), count);
+  }
 }
 
 /// Where the sizes are equal, the number decides, and nothing contradicts.

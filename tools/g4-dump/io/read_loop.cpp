@@ -19,6 +19,7 @@ using clock = std::chrono::steady_clock;
 
 constexpr auto pulse_time = 100ms;
 constexpr auto flush_time = 50ms;
+constexpr std::uint64_t most_without_s = 10;
 
 class read_loop {
  public:
@@ -39,6 +40,7 @@ class read_loop {
         limits_.restart_idle();
       } else {
         flush_if_due();
+        refuse_endless();
         wait();
       }
       if (recording_ != nullptr) bar_.show(recording_->position());
@@ -76,6 +78,21 @@ class read_loop {
     throw failure(took.error(), true);
   }
 
+  /// Packets come, and make no revolution: the command would wait for ever.
+  void refuse_endless() {
+    const bool goes_on = options_.count == 0 && records_ > 0;  // the head may turn again
+    if (!sink_.scan || recording_ != nullptr || options_.duration != 0ns || goes_on) return;
+    const lidar_counts now = lidar_.counts();
+    if (now.scans != whole_.scans || records_ != whole_.records)
+      whole_ = {now.scans, records_, now.stream.points};
+    const std::uint64_t most = most_without_s * first_rate_hz(*lidar_.recognition().model);
+    if (now.stream.points < whole_.points + most) return;
+    report_events(lidar_);
+    throw failure(g4lidar::error(task::reading, g4lidar::problem::timeout, lidar_.name(), 0,
+                                 g4lidar::error_detail::no_revolution),
+                  true);
+  }
+
   void wait() {
     if (lidar_.event_loop().native_handle() < 0) return;  // read() has waited
     auto until =
@@ -97,6 +114,11 @@ class read_loop {
   progress_bar bar_{recording_ == nullptr ? 0 : recording_->size(),
                     sink_.with_bar && !is_terminal_};
   std::uint64_t records_ = 0;
+  struct {
+    std::uint64_t scans = 0;
+    std::uint64_t records = 0;
+    std::uint64_t points = 0;
+  } whole_;  // when the last revolution was complete
   bool ended_ = false;
 };
 
