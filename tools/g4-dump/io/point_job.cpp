@@ -280,8 +280,9 @@ class point_run {
         scan_record record{.scan = scan};
         if (!scan.points.empty()) record.time_ns = scan.points.front().time_ns;
         record.measured_hz = static_cast<double>(scan.measured_frequency_hz());
+        const std::uint64_t left_out = writer_->pieces_left_out();
         writer_->write_scan(record, out);
-        return std::uint64_t{1};
+        return std::uint64_t{writer_->pieces_left_out() == left_out ? 1U : 0U};
       };
     } else {
       sink.points = [&](std::span<const point> points) { writer_->write_points(points, out); };
