@@ -88,7 +88,7 @@ std::string part_of_a_turn() {
 TEST(NoRevolution, AScanThatIsCounted_EndsWithAnError) {
   const endless_device device(part_of_a_turn());
   const outcome done = run({"scan", "-n", "1", "--listen", "--model", "g4", device.path()});
-  EXPECT_EQ(done.code, 6) << done.err;
+  EXPECT_EQ(done.code, 9) << done.err;
   EXPECT_THAT(done.err, HasSubstr("no revolution was complete"));
 }
 
