@@ -65,6 +65,8 @@ class event_reader {
   [[nodiscard]] stream_samples other() const noexcept {
     return sizes_ ? sizes_->other() : stream_samples{};
   }
+  /// Whether the samples since expect() have another size, whatever else is known of them.
+  [[nodiscard]] bool has_other_size() const noexcept { return sizes_ && sizes_->is_other(); }
   /// Whether packets since expect() have shown that the size is right.
   [[nodiscard]] bool is_as_expected() const noexcept { return !sizes_; }
   /// See stream_parser::set_layout().

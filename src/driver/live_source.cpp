@@ -145,6 +145,8 @@ bool live_source::refuses(const device_information& who) const noexcept {
 
 /// The samples have another size than those of the model: they decide, unless the user does.
 result<void> live_source::follow_samples() {
+  const bool is_other = pipeline_.input().has_other_size();
+  if (!std::exchange(is_held_, is_other) && is_other) stream_.hold();
   const stream_samples seen = pipeline_.input().other();
   if (seen.bytes == 0) return {};
   const bool answers = !options_.listen_only && options_.model->link == link_kind::two_way;

@@ -152,6 +152,7 @@ result<void> live_stream::set_motor(bool on) {
 }
 
 void live_stream::become(const model& which) {
+  record(recorded_event::kind::cut);  // what is held of a packet is dropped
   talk().reset(&which, true);
   reported_ = identity_reader(which, link_.listens());
   motor_ = which.motor;

@@ -68,6 +68,8 @@ class live_stream {
   void follow_delivery();
   /// The motor is started, or was interrupted: the points that follow are a new stream.
   void begin_points();
+  /// No points are made until become(): for a recording, whose reader may know the model before.
+  void hold() { record(recorded_event::kind::held); }
   /// The device is one like `which`, and goes on. Only if everything that was received is parsed.
   void become(const model& which);
   /// Uses the sample rate, if it is the answer.
