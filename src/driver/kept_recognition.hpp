@@ -75,6 +75,12 @@ class kept_recognition {
 
   std::optional<device_information>
       module;  ///< Of the turning part, if it has reported another one.
+  /// Of a live lidar.
+  struct {
+    bool is_judged = false;  ///< By packets since the start.
+    bool is_held =
+        false;  ///< Its samples have another size, and make no points until the model has followed.
+  } live;
 
  private:
   recognition what_;

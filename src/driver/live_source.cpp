@@ -146,7 +146,8 @@ bool live_source::refuses(const device_information& who) const noexcept {
 /// The samples have another size than those of the model: they decide, unless the user does.
 result<void> live_source::follow_samples() {
   const bool is_other = pipeline_.input().has_other_size();
-  if (!std::exchange(is_held_, is_other) && is_other) stream_.hold();
+  if (!std::exchange(recognised_.live.is_held, is_other) && is_other)
+    stream_.record(recorded_event::kind::held);
   const stream_samples seen = pipeline_.input().other();
   if (seen.bytes == 0) return {};
   const bool answers = !options_.listen_only && options_.model->link == link_kind::two_way;
@@ -157,7 +158,7 @@ result<void> live_source::follow_samples() {
       return tl::unexpected(other_samples_error(seen.bytes, *options_.model, connection_.name()));
     options_.model = found;
     stream_.become(*found);
-    is_model_judged_ = false;
+    recognised_.live.is_judged = false;
   } catch (const std::bad_alloc&) {
     return failure(task::reading, problem::system, connection_.name(), ENOMEM);
   }
@@ -169,9 +170,9 @@ result<void> live_source::follow_samples() {
 /// where it becomes another one.
 void live_source::judge_model() noexcept {
   if (stage_ != live_stage::scanning) {
-    is_model_judged_ = false;
-  } else if (!is_model_judged_ && pipeline_.input().is_as_expected()) {
-    is_model_judged_ = true;
+    recognised_.live.is_judged = false;
+  } else if (!recognised_.live.is_judged && pipeline_.input().is_as_expected()) {
+    recognised_.live.is_judged = true;
     recognised_.confirm();
     if (pipeline_.decoder().lacks_zero()) report(lidar_event::kind::no_zero_angle);
   }

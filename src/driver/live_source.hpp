@@ -85,9 +85,6 @@ class live_source : public scan_source {
   [[nodiscard]] std::uint32_t known_baud() const noexcept;
   [[nodiscard]] result<void> hang_up();
   void judge_model() noexcept;
-
-  bool is_held_ = false;          // the samples have another size, and no points are made
-  bool is_model_judged_ = false;  // by packets since the start
 };
 
 }  // namespace g4lidar

@@ -68,10 +68,10 @@ class live_stream {
   void follow_delivery();
   /// The motor is started, or was interrupted: the points that follow are a new stream.
   void begin_points();
-  /// No points are made until become(): for a recording, whose reader may know the model before.
-  void hold() { record(recorded_event::kind::held); }
   /// The device is one like `which`, and goes on. Only if everything that was received is parsed.
   void become(const model& which);
+  /// For a recording: what happens here.
+  void record(recorded_event::kind what);
   /// Uses the sample rate, if it is the answer.
   void learn(const answer& heard);
 
@@ -97,7 +97,6 @@ class live_stream {
  private:
   [[nodiscard]] std::int64_t now_ns() const noexcept { return of_.on.now_ns(); }
   [[nodiscard]] reading how_to_read() const noexcept;
-  void record(recorded_event::kind what);
 
   parts of_;
   read_pace pace_;
