@@ -38,11 +38,10 @@ struct replay_verb_options {
 }
 
 /// Plays the file and computes the digests again: they must equal those in the file.
-void verify(const std::string& path, const g4lidar::model* which) {
+void verify(const std::string& path) {
   const std::string title = in_quotes(path);
   recording_job job;
   job.common.source = path;
-  job.common.expected.model = which;
   job.path = "/dev/null";
   job.made.overwrite = true;
   job.made.scans = job.shows_counts = false;
@@ -97,7 +96,7 @@ int run(const replay_verb_options& options) {
         " is not a recording. Give a file made by g4-dump record; g4-dump dump reads raw bytes.");
   }
   if (!options.verify) return run(options.job);
-  verify(path_of_source(name), options.job.common->expected.model);
+  verify(path_of_source(name));
   return exit_code_now();
 }
 
@@ -111,8 +110,8 @@ verb make_replay_verb() {
   played.speed = 1.0;
   option_row verification =
       flag_row("--verify", "Check that the file holds what was recorded", options->verify);
-  verification.excludes = {"--playback-speed", "--loop",  "--from",  "--to",      "--output",
-                           "--format",         "--scans", "--count", "--duration"};
+  verification.excludes = {"--playback-speed", "--loop",  "--from",  "--to",       "--output",
+                           "--format",         "--scans", "--count", "--duration", "--model"};
   return {
       .name = "replay",
       .summary = "Play a recording at its own speed or another, or verify it",
