@@ -57,13 +57,14 @@ struct lidar_options {
   /// after a loss. See find_options::probe_all_ports: bytes are sent to whatever is attached there.
   bool probe_all_ports = false;
   /// What sends the bytes; valid as long as the lidar and its scans. Null: what a recording or `sim:`
-  /// states, raw bytes show, or a search at the port finds; of a connector of the program a G4. A source
-  /// that states another model is refused with bad_option. A device whose packets cannot be read so, or whose number,
+  /// states, raw bytes show, or a search at the port finds; of a connector of the program a G4. A source that states
+  /// another model is refused with bad_option: `sim:`; a recording whose samples have another size, or that is sure of its
+  /// model. A device whose packets cannot be read so, or whose number,
   /// rate and size of samples all are those of another model, is refused with other_device; what else contradicts is in
   /// lidar::recognition().
   const g4lidar::model* model = nullptr;
-  /// `model` is certain, whatever the lidar reports: without it, a named lidar is refused that reports the number of
-  /// another model with samples of the same size.
+  /// `model` is certain, whatever the lidar reports, or a recording states: without it, a named lidar is refused that
+  /// reports the number of another model with samples of the same size, and a recording of such a model.
   bool insist_on_model = false;
   /// Not a byte is sent: for a data wire alone, or on the wire of a lidar that another computer drives. A lidar that
   /// waits for commands stays silent. Requests and settings are refused with not_supported. A lidar that sends whole

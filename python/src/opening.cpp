@@ -268,7 +268,8 @@ void bind_open(nb::module_& module, keyword_types<Wanted...>, std::index_sequenc
       "the bytes may not have. `record`: the MCAP file to which the lidar is recorded; an existing "
       "file only with `overwrite`, and never the file that is read. `listen_only`: not a byte is "
       "sent; settings and requests are refused. `insist_on_model`: `model` is right, whatever "
-      "number the lidar reports. `leave_dtr`: the line DTR of the port is not set.\n\n"
+      "number the lidar reports, or model a recording states. `leave_dtr`: the line DTR of the "
+      "port is not set.\n\n"
       "Takes about 0.06 s with a healthy device, at most 15 s. Raises an Error.");
 }
 

@@ -72,6 +72,7 @@ class file_run {
       if (device->sample_rate) device_.sample_rate_hz = to_hz(*device->sample_rate);
       if (device->recognised) {
         recognition seen_as = *device->recognised;
+        seen_as.has_shown_samples = true;  // nothing more is awaited
         if (std::exchange(seen_as.model, &model_) != &model_) seen_as.by = known_by::user;
         if (!port_.remark.empty()) port_.remark += " ";
         port_.remark += contradictions_of(seen_as);

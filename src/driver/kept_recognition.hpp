@@ -2,6 +2,7 @@
 // As which model a driver reads its source.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <new>
 #include <optional>
@@ -43,8 +44,18 @@ class kept_recognition {
   void set_bridge(bool speaks_telnet, bool again) noexcept {
     what_.speaks_telnet = speaks_telnet || (what_.speaks_telnet && !again);
   }
-  /// Packets of the model have come.
-  void confirm() noexcept { what_.has_shown_samples = true; }
+  /// Packets of the model have come. *Allocates.*
+  void confirm(std::uint32_t baud, bool answers) {
+    what_.has_shown_samples = true;
+    if (what_.by != known_by::nothing) return;
+    what_.by = known_by::samples;
+    candidates_ = models_that_fit({.baud = baud,
+                                   .sample_bytes = sample_size(what_.model->samples.layout),
+                                   .answers = answers ? presence::yes : presence::no});
+    if (candidates_.empty()) candidates_ = {what_.model};
+    const auto first = std::ranges::find(candidates_, what_.model);
+    if (first != candidates_.end()) std::rotate(candidates_.begin(), first, first + 1);
+  }
   /// Its samples have another size than those of its number: the model is one that has, at this baud rate and with this
   /// sample rate. Null: there is none. *Allocates.*
   [[nodiscard]] const model* follow(const stream_samples& seen, std::uint32_t baud, bool answers) {

@@ -12,6 +12,7 @@
 
 #include "core/number_text.hpp"
 #include "driver.hpp"
+#include "g4lidar/core/model_choice.hpp"
 #include "g4lidar/detail/enumerators.hpp"
 #include "g4lidar/source.hpp"
 #include "option_problems.hpp"
@@ -112,7 +113,8 @@ result<lidar> lidar::open(std::unique_ptr<connector> from, const lidar_options& 
     return tl::unexpected(*wrong);
   }
   lidar_options used = options;
-  if (used.model == nullptr) used.model = stated;
+  const bool follows = used.model == nullptr && behind.begun_as != nullptr;
+  if (used.model == nullptr) used.model = follows ? behind.begun_as : stated;
   if (behind.recognised.is_silent && behind.answers) used.listen_only = true;
   if (used.model == nullptr) used.model = &g4_model;
   const option_users users = behind.answers ? live | port : recording | raw_file | pipe;
@@ -126,6 +128,9 @@ result<lidar> lidar::open(std::unique_ptr<connector> from, const lidar_options& 
   g4lidar::recognition known = behind.recognised;
   if (options.model != nullptr && (stated == nullptr || *stated != *options.model)) {
     known.by = known_by::user;
+    known.candidates = {};
+  } else if (follows) {
+    known.by = has_number(*used.model, known.number) ? known_by::number : known_by::nothing;
     known.candidates = {};
   }
   auto made = std::make_unique<driver>(std::move(from), used, known);

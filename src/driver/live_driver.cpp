@@ -57,7 +57,9 @@ result<bool> live_driver::serve() {
   if (talk.has_nothing() && setup_.is_done()) return false;  // the usual case
   if (const notice what = talk.noticed(); what != notice::none) {
     if (what == notice::stalled) return tl::unexpected(silence_error());
-    report(event_of(what));
+    // Whole packets of another size are no packets of the session.
+    const bool is_apparent = what == notice::spinning_up && pipeline_.input().has_other_size();
+    if (!is_apparent) report(event_of(what));
     if (what == notice::found_scanning) listening_ = {};
     const bool is_reset = what == notice::restarted || what == notice::protection_found_on;
     if (is_reset && wants_scan_ && !set_up_again()) return tl::unexpected(silence_error());

@@ -150,10 +150,9 @@ result<void> live_source::follow_samples() {
     stream_.record(recorded_event::kind::held);
   const stream_samples seen = pipeline_.input().other();
   if (seen.bytes == 0) return {};
-  const bool answers = !options_.listen_only && options_.model->link == link_kind::two_way;
   try {
     const model* const found =
-        recognised_.is_stated() ? nullptr : recognised_.follow(seen, known_baud(), answers);
+        recognised_.is_stated() ? nullptr : recognised_.follow(seen, known_baud(), answers());
     if (found == nullptr)
       return tl::unexpected(other_samples_error(seen.bytes, *options_.model, connection_.name()));
     options_.model = found;
@@ -166,6 +165,16 @@ result<void> live_source::follow_samples() {
   return {};
 }
 
+/// The packets are those of the model.
+void live_source::confirm() noexcept {
+  try {
+    recognised_.confirm(known_baud(), answers());
+  } catch (const std::bad_alloc&) {
+    return;  // its candidates are not known
+  }
+  recognised_.record(connection_.from());
+}
+
 /// Once for each start, when the packets have shown that they are those of the model: what is reported before is wrong
 /// where it becomes another one.
 void live_source::judge_model() noexcept {
@@ -173,7 +182,7 @@ void live_source::judge_model() noexcept {
     recognised_.live.is_judged = false;
   } else if (!recognised_.live.is_judged && pipeline_.input().is_as_expected()) {
     recognised_.live.is_judged = true;
-    recognised_.confirm();
+    confirm();
     if (pipeline_.decoder().lacks_zero()) report(lidar_event::kind::no_zero_angle);
   }
 }

@@ -138,7 +138,9 @@ std::optional<error> problem_with_model(const lidar_options& options, const reco
     subject.append(", samples of ").append(std::to_string(size));
     subject.append(" bytes, not of ").append(std::to_string(given_size));
   } else if (stated.by == known_by::recording) {
-    subject.append("; ").append(given->word).append("! insists on it (option insist_on_model)");
+    subject.append(" (")
+        .append(given->word)
+        .append("!, or insist_on_model, reads it all the same)");
   }
   return error(task::opening, problem::bad_option, subject);
 }

@@ -31,7 +31,7 @@ std::string number_text(std::uint8_t number, const recognition& what) {
   }
   text.append(" It is read as ").append(article_of(read_as)).append(" ").append(read_as.name);
   if (what.candidates.size() > 1 && what.by == known_by::samples)
-    text += ", and " + model_words(what.candidates.subspan(1)) + " send the same";
+    text += ", and its packets may be those of " + model_words(what.candidates.subspan(1));
   if (what.by == known_by::nothing) text += " until its packets show more";
   text += ": compare the label of the lidar.";
   return owner == models.end() ? text.append(please) : text;

@@ -81,6 +81,7 @@ class stated_connector : public forwarding_connector {
     known.recognised.model = model_;
     known.recognised.by = by_;
     known.recognised.candidates = {};
+    known.begun_as = nullptr;
     return known;
   }
 
@@ -110,6 +111,10 @@ class simulated_connector final : public stated_connector {
 result<std::unique_ptr<connector>> connect_simulated(const lidar_options& options, bool always) {
   auto made = sim::open_simulated(options.device);
   if (!made) return tl::unexpected(made.error());
+  const recognition stated{.model = &simulated_connector::model_of(*made), .by = known_by::user};
+  if (const auto wrong = problem_with_model({.model = options.model}, stated, "the source")) {
+    return tl::unexpected(*wrong);
+  }
   auto inner = system_connector::find(
       made->port->path(), known_of(options, &simulated_connector::model_of(*made)), always);
   if (!inner) return inner;
@@ -123,7 +128,8 @@ result<std::unique_ptr<connector>> connect_simulated(const lidar_options& option
 
 /// With a model that is given, and another one in the name.
 std::optional<error> problem_with_name(const lidar_options& options, const model* in_name) {
-  return problem_with_model(options, {.model = in_name, .by = known_by::user}, "the name");
+  return problem_with_model({.model = options.model}, {.model = in_name, .by = known_by::user},
+                            "the name");
 }
 
 /// `from`, read as the model of the options, or an error if it cannot be.

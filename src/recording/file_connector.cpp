@@ -80,7 +80,8 @@ class file_connector final : public connector, public recording_hook {
     return {.answers = false,
             .counts_time = is_counted,
             .wall_ahead_ns = of_->wall_ahead_ns(),
-            .recognised = read_as()};
+            .recognised = read_as(),
+            .begun_as = begun_as()};
   }
   [[nodiscard]] played_file* file() const noexcept { return of_.get(); }
 
@@ -90,10 +91,15 @@ class file_connector final : public connector, public recording_hook {
     const item_source& source = of_->items().source();
     recognition known = of_->device().recognised.value_or(recognition{.by = known_by::recording});
     const bool is_guessed = known.by == known_by::samples || known.by == known_by::nothing;
-    known.model = &source.model();
+    if (known.model == nullptr) known.model = &source.model();
     if (source.recording() != nullptr && !is_guessed) known.by = known_by::recording;
     known.candidates = candidates_;
     return known;
+  }
+
+  [[nodiscard]] const model* begun_as() const noexcept {
+    const model& first = of_->items().source().begun_as();
+    return read_as().model->word != first.word ? &first : nullptr;
   }
 
   std::shared_ptr<played_file> of_;

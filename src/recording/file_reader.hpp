@@ -31,6 +31,7 @@ class recording_reader::file_reader {
     const g4lidar::model* const last = device_ ? device_->read_as() : nullptr;
     return last != nullptr ? *last : channels_.model();
   }
+  [[nodiscard]] const g4lidar::model& begun_as() const noexcept { return channels_.model(); }
   [[nodiscard]] std::int64_t first_ns() const noexcept { return first_ns_; }
   [[nodiscard]] std::int64_t last_ns() const noexcept { return last_ns_; }
   [[nodiscard]] const recording_damage& damage() const noexcept;
@@ -81,6 +82,8 @@ class recording_reader::file_reader {
 
 /// Opens a recording in any kind of byte source.
 struct recording_access {
+  /// As which model its driver began to read it.
+  [[nodiscard]] static const model& begun_as(const recording_reader& of) noexcept;
   [[nodiscard]] static result<recording_reader> open(std::shared_ptr<mcap::byte_source> file,
                                                      std::string_view path,
                                                      const reading_options& options);

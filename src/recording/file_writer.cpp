@@ -314,7 +314,7 @@ result<void> recording_writer::file_writer::end_file(bool is_only_one) {
                        {"last_ns", std::to_string(covered_.last_ns())}};
   const model* const last = device_ ? device_->read_as() : nullptr;
   const bool has_changed = last != nullptr && *last != channels_.model();
-  // They continue from file to file, and a player reads all bytes as of the last model.
+  // They continue from file to file, and a player may change the model a packet later.
   if (is_only_one && points_.count() > 0 && !has_changed) {
     words.emplace_back("points", hexadecimal(points_.value()));
     words.emplace_back("point_count", std::to_string(points_.count()));

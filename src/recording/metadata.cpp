@@ -166,10 +166,17 @@ word_map words_of(const recorded_device& device) {
 
 recorded_device joined(const recorded_device& before, const recorded_device& known) {
   recorded_device both = known;
-  if (!known.recognised) {
-    both.recognised = before.recognised;
-    both.candidates = before.candidates;
-  }
+  const auto keep = [&](auto part) {
+    if (!(both.*part)) both.*part = before.*part;
+  };
+  if (!known.recognised) both.candidates = before.candidates;
+  keep(&recorded_device::recognised);
+  keep(&recorded_device::sample_rate);
+  keep(&recorded_device::frequency);
+  keep(&recorded_device::motor);
+  keep(&recorded_device::constant);
+  keep(&recorded_device::idle);
+  keep(&recorded_device::protection);
   if (!known.information.is_known()) both.information = before.information;
   return both;
 }

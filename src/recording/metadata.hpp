@@ -27,7 +27,7 @@ inline constexpr std::string_view digest_metadata = "g4lidar.digest";
 /// one has version 1.
 inline constexpr std::string_view points_version = "6";
 [[nodiscard]] word_map words_of(const recorded_device& device);
-/// `known`, with what `before` knows and it does not of the lidar and its model.
+/// `known`, and what only `before` knows.
 [[nodiscard]] recorded_device joined(const recorded_device& before, const recorded_device& known);
 /// Missing or invalid fields are not known.
 [[nodiscard]] recorded_device device_of(field_reader& map);

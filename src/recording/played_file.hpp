@@ -38,6 +38,8 @@ class item_source {
   [[nodiscard]] virtual std::int64_t last_ns() noexcept = 0;
   /// What sent the bytes. Valid as long as this.
   [[nodiscard]] virtual const g4lidar::model& model() const noexcept = 0;
+  /// As which model its driver began to read it.
+  [[nodiscard]] virtual const g4lidar::model& begun_as() const noexcept { return model(); }
   /// Null: raw bytes, which have neither events nor times of a device.
   [[nodiscard]] virtual const recording_reader* recording() const noexcept { return nullptr; }
 

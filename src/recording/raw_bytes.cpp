@@ -267,9 +267,12 @@ recorded_device about(const recognised_model& found) {
   }
   const std::size_t size = sample_size(which.samples.layout);
   std::vector<const model*> all;
+  const auto measures = [&](const model& row) {
+    return may_measure(row, found.rate_hz, found.frequency_dhz);
+  };
   for (const model& row : models) {
     const bool fits = may_send(row, size, found.basis == recognised_by::flags) &&
-                      (may_measure(row, found.rate_hz) || !may_measure(which, found.rate_hz));
+                      (measures(row) || !measures(which));
     if (fits) all.push_back(&row);
   }
   return {.recognised = recognition{.model = &which, .by = known_by::samples},

@@ -31,6 +31,10 @@ result<recording_reader> recording_reader::open(std::string_view path,
   return recording_access::open(std::move(*file), path, options);
 }
 
+const model& recording_access::begun_as(const recording_reader& of) noexcept {
+  return of.made_ ? of.made_->begun_as() : g4_model;
+}
+
 result<recording_reader> recording_access::open(std::shared_ptr<mcap::byte_source> file,
                                                 std::string_view path,
                                                 const reading_options& options) {

@@ -15,14 +15,14 @@
 namespace g4lidar {
 namespace {
 
-/// The first device information in the bytes, if the recording has no metadata.
+/// What is known at its begin, where the recording was cut off; and the first device information in the bytes.
 std::optional<recorded_device> device_in(std::string_view path,
                                          const std::function<bool()>& is_cancelled) {
   constexpr std::uint64_t far_enough = std::uint64_t{64} << 10U;
   auto reader = recording_reader::open(path, {.is_cancelled = is_cancelled});
   if (!reader) return std::nullopt;
   stream_parser parser(reader->model().samples);
-  std::optional<recorded_device> found;
+  std::optional<device_information> found;
   std::uint64_t read = 0;
   static_cast<void>(reader->for_each([&](const recorded_item& item) {
     read += item.data.size() + 1;
@@ -30,11 +30,14 @@ std::optional<recorded_device> device_in(std::string_view path,
     parser.feed(item.data, [&](const event& what) {
       const auto* const response = std::get_if<response_view>(&what);
       if (response == nullptr || found) return;
-      if (const auto who = response->as_device_info()) found = recorded_device{.information = *who};
+      if (const auto who = response->as_device_info()) found = *who;
     });
-    return !found && read < far_enough;
+    return read < far_enough;
   }));
-  return found;
+  std::optional<recorded_device> known = reader->device();
+  if (found && !known) known.emplace();
+  if (found && !known->information.is_known()) known->information = *found;
+  return known;
 }
 
 class recorded_items final : public item_source {
@@ -59,6 +62,9 @@ class recorded_items final : public item_source {
   [[nodiscard]] std::int64_t first_ns() const noexcept override { return reader_.first_ns(); }
   [[nodiscard]] std::int64_t last_ns() noexcept override { return reader_.last_ns(); }
   [[nodiscard]] const g4lidar::model& model() const noexcept override { return reader_.model(); }
+  [[nodiscard]] const g4lidar::model& begun_as() const noexcept override {
+    return recording_access::begun_as(reader_);
+  }
   [[nodiscard]] const recording_reader* recording() const noexcept override { return &reader_; }
 
  private:
@@ -81,10 +87,9 @@ result<std::unique_ptr<connector>> replay::open(std::string_view path,
   auto reader = recording_reader::open(path, range);
   if (!reader) return tl::unexpected(reader.error());
   auto device = reader->device();
-  if (!device || !device->information.is_known()) {
-    const auto shown = device_in(path, range.is_cancelled);
-    if (!device) device = shown;
-    if (shown) device->information = shown->information;
+  const bool is_cut_off = !reader->digest();
+  if (is_cut_off || !device || !device->information.is_known()) {
+    if (const auto shown = device_in(path, range.is_cancelled)) device = shown;
   }
   auto items = std::make_unique<recorded_items>(std::move(*reader), path, range);
   return connect_to(std::make_shared<played_file>(

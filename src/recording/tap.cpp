@@ -119,7 +119,8 @@ class recorded_connector final : public forwarding_connector,
   void recognised(const recognition& what) noexcept override {
     if (inner_hook_ != nullptr) inner_hook_->recognised(what);
     const bool is_same = recognised_ && recognised_->model == what.model &&
-                         recognised_->number == what.number && recognised_->baud == what.baud &&
+                         recognised_->by == what.by && recognised_->number == what.number &&
+                         recognised_->baud == what.baud &&
                          recognised_->is_silent == what.is_silent &&
                          recognised_->speaks_telnet == what.speaks_telnet;
     if (is_same) return;  // after a reconnect
@@ -176,7 +177,10 @@ result<std::unique_ptr<connector>> recorded(std::unique_ptr<connector> from,
     return failure(task::opening, problem::bad_option,
                    "the file of the recording is also its source");
   }
-  if (const model* const stated = from->traits().recognised.model) {
+  const connector_traits behind = from->traits();
+  const model* const stated =
+      behind.begun_as != nullptr ? behind.begun_as : behind.recognised.model;
+  if (stated != nullptr) {
     if (auto taken = into.made_->take_model(*stated); !taken) return tl::unexpected(taken.error());
   }
   return std::make_unique<recorded_connector<writer>>(std::move(from), *into.made_);

@@ -89,7 +89,7 @@ TEST(NoRevolution, AScanThatIsCounted_EndsWithAnError) {
   const endless_device device(part_of_a_turn());
   const outcome done = run({"scan", "-n", "1", "--listen", "--model", "g4", device.path()});
   EXPECT_EQ(done.code, 9) << done.err;
-  EXPECT_THAT(done.err, HasSubstr("no revolution was complete"));
+  EXPECT_THAT(done.err, HasSubstr("10 s of packets make no whole revolution"));
 }
 
 /// Pieces are wanted, or the user has set the end.

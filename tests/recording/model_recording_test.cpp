@@ -219,7 +219,8 @@ TEST_F(ModelRecording, TheUserMayInsistOnAnotherModelOfASureOne) {
   const auto refused = lidar::open(file, {.model = other});
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error(), problem::bad_option);
-  EXPECT_THAT(refused.error().message(), HasSubstr("t-mini-plus! insists on it"));
+  EXPECT_THAT(refused.error().message(),
+              HasSubstr("t-mini-plus!, or insist_on_model, reads it all the same"));
   EXPECT_EQ(model_of_source({.device = file, .model = other}).error(), problem::bad_option);
   const auto insists = lidar::open(file, {.model = other, .insist_on_model = true});
   ASSERT_TRUE(insists) << insists.error().message();

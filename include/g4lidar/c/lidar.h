@@ -99,7 +99,7 @@ typedef struct g4lidar_options {
   bool probe_all_ports;
   /** Not a byte is sent: settings and requests are refused. */
   bool listen_only;
-  /** `model` is right, whatever number the lidar reports. */
+  /** `model` is right, whatever number the lidar reports, or model a recording states. */
   bool insist_on_model;
   /** The line DTR of the port is not set: a motor that it drives keeps its state. */
   bool leave_dtr;

@@ -28,6 +28,8 @@ struct connector_traits {
   /// What is known about the model. As long as nothing is, `model` is null and `by` nothing. Its candidates are valid as
   /// long as the connector.
   g4lidar::recognition recognised{};
+  /// As which model the driver of a recording read it at first, if `recognised` has another one. Valid forever.
+  const model* begun_as = nullptr;
   /// Whether the model was searched at the device, or will be: its port could not be opened yet.
   bool is_searched = false;
 };

@@ -228,7 +228,8 @@ class point_run {
       logger::info(stats_in_words(way.counts(), way.bytes()));
       logger::info(warning_about(way.counts(), way.bytes(), beginning));
       if (way.lacks_zero()) report_missing_zero(*model_);
-      report_contradictions({.model = model_, .number = way.other_number()});
+      report_contradictions(
+          {.model = model_, .by = known_by::samples, .number = way.other_number()});
     }
     if (way.counts().packets == 0 && !out.is_closed() && interrupt() == 0) {
       throw failure(exit_code::bad_file,

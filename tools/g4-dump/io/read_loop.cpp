@@ -88,9 +88,13 @@ class read_loop {
     const std::uint64_t most = most_without_s * first_rate_hz(*lidar_.recognition().model);
     if (now.stream.points < whole_.points + most) return;
     report_events(lidar_);
-    throw failure(g4lidar::error(task::reading, g4lidar::problem::timeout, lidar_.name(), 0,
-                                 g4lidar::error_detail::no_revolution),
-                  true);
+    throw failure(
+        exit_code::lost,
+        fmt::format("{}: {} s of packets make no whole revolution: the head stands, or turns very "
+                    "slowly, or the lidar sends no packet of the angle 0. --partial writes the "
+                    "pieces; g4-dump doctor examines the lidar.",
+                    lidar_.name(), most_without_s),
+        name_of(g4lidar::problem::timeout));
   }
 
   void wait() {

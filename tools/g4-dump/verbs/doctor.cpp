@@ -158,8 +158,11 @@ int examine(const doctor_options& options) {
   how.probe_all_ports = options.expected.all_ports;
   const source_kind kind = kind_of_source(options.source);
   std::optional<recognised_model> seen;
-  const g4lidar::model* const named =
-      kind != source_kind::simulated ? model_of(options, &seen) : options.expected.model;
+  // What cannot be read as the named model is examined all the same.
+  const bool is_named = kind == source_kind::raw_bytes && options.expected.model != nullptr;
+  const g4lidar::model* const named = kind != source_kind::simulated && !is_named
+                                          ? model_of(options, &seen)
+                                          : options.expected.model;
   // A recording states its model itself, and what contradicts it.
   how.model = kind != source_kind::recording ? named : options.expected.model;
   if (seen) report_model(*seen->which, seen->is_usual());

@@ -73,8 +73,10 @@ device_facts facts_of_device(const common_options& options) {
   if (lidar.information().is_known()) facts.information = lidar.information();
   if (options.expected.listens) facts.why_unknown = "only listened to";
   facts.candidates.assign(source.candidates().begin(), source.candidates().end());
-  facts.known_by = name_of(lidar.recognition().by);
-  facts.contradictions = contradictions_of(lidar.recognition());
+  recognition found = lidar.recognition();
+  found.has_shown_samples = true;  // nothing more is awaited
+  facts.known_by = name_of(found.by);
+  facts.contradictions = contradictions_of(found);
   report_contradictions(facts.contradictions);
   for (std::size_t i = 0; i < facts.settings.size(); ++i) {
     facts.settings[i] = read_setting(lidar, all_settings()[i]);

@@ -211,7 +211,7 @@ void report_contradictions(const g4lidar::lidar& from) {
   const auto has_it = [&](const g4lidar::model& row) { return has_number(row, found.number); };
   const bool is_guessed = found.by == known_by::samples || found.by == known_by::nothing;
   const bool may_change = is_guessed && found.number != 0 && std::ranges::none_of(models, has_it) &&
-                          !found.was_stopped && from.counts().stream.packets == 0;
+                          !found.was_stopped && from.counts().stream.packets <= certain_packets;
   if (!may_change) report_contradictions(found);
 }
 
