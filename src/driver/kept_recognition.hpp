@@ -44,8 +44,8 @@ class kept_recognition {
   void set_bridge(bool speaks_telnet, bool again) noexcept {
     what_.speaks_telnet = speaks_telnet || (what_.speaks_telnet && !again);
   }
-  /// Packets of the model have come. *Allocates.*
-  void confirm(std::uint32_t baud, bool answers) {
+  /// Packets of the model have come. Its candidates are not known where there is no memory.
+  void confirm(std::uint32_t baud, bool answers) noexcept try {
     what_.has_shown_samples = true;
     if (what_.by != known_by::nothing) return;
     what_.by = known_by::samples;
@@ -55,6 +55,8 @@ class kept_recognition {
     if (candidates_.empty()) candidates_ = {what_.model};
     const auto first = std::ranges::find(candidates_, what_.model);
     if (first != candidates_.end()) std::rotate(candidates_.begin(), first, first + 1);
+  } catch (const std::bad_alloc&) {
+    candidates_.clear();
   }
   /// Its samples have another size than those of its number: the model is one that has, at this baud rate and with this
   /// sample rate. Null: there is none. *Allocates.*

@@ -9,6 +9,13 @@
 #include "outcome_error.hpp"
 
 namespace g4lidar {
+namespace {
+
+bool may_answer(const lidar_options& options) noexcept {
+  return !options.listen_only && options.model->link == link_kind::two_way;
+}
+
+}  // namespace
 
 live_source::live_source(parts& of, const lidar_options& options)
     : scan_source(of, options),
@@ -151,8 +158,9 @@ result<void> live_source::follow_samples() {
   const stream_samples seen = pipeline_.input().other();
   if (seen.bytes == 0) return {};
   try {
-    const model* const found =
-        recognised_.is_stated() ? nullptr : recognised_.follow(seen, known_baud(), answers());
+    const model* const found = recognised_.is_stated()
+                                   ? nullptr
+                                   : recognised_.follow(seen, known_baud(), may_answer(options_));
     if (found == nullptr)
       return tl::unexpected(other_samples_error(seen.bytes, *options_.model, connection_.name()));
     options_.model = found;
@@ -165,16 +173,6 @@ result<void> live_source::follow_samples() {
   return {};
 }
 
-/// The packets are those of the model.
-void live_source::confirm() noexcept {
-  try {
-    recognised_.confirm(known_baud(), answers());
-  } catch (const std::bad_alloc&) {
-    return;  // its candidates are not known
-  }
-  recognised_.record(connection_.from());
-}
-
 /// Once for each start, when the packets have shown that they are those of the model: what is reported before is wrong
 /// where it becomes another one.
 void live_source::judge_model() noexcept {
@@ -182,7 +180,8 @@ void live_source::judge_model() noexcept {
     recognised_.live.is_judged = false;
   } else if (!recognised_.live.is_judged && pipeline_.input().is_as_expected()) {
     recognised_.live.is_judged = true;
-    confirm();
+    recognised_.confirm(known_baud(), may_answer(options_));
+    recognised_.record(connection_.from());
     if (pipeline_.decoder().lacks_zero()) report(lidar_event::kind::no_zero_angle);
   }
 }

@@ -84,10 +84,6 @@ class live_source : public scan_source {
   [[nodiscard]] bool refuses(const device_information& who) const noexcept;
   [[nodiscard]] std::uint32_t known_baud() const noexcept;
   [[nodiscard]] result<void> hang_up();
-  [[nodiscard]] bool answers() const noexcept {
-    return !options_.listen_only && options_.model->link == link_kind::two_way;
-  }
-  void confirm() noexcept;
   void judge_model() noexcept;
 };
 

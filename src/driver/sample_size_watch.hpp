@@ -55,7 +55,7 @@ class sample_size_watch {
 
  private:
   static constexpr std::uint32_t enough = 3;
-  static constexpr std::uint32_t most_packets = 160;
+  static constexpr std::uint32_t most_packets = 512;
 
   /// Of a revolution with such a stated rate and frequency, at least: with 40 samples each, as all models send.
   [[nodiscard]] static constexpr std::uint32_t packets_of_turn(std::uint32_t hz,

@@ -37,7 +37,6 @@ class recording_reader::file_reader {
   [[nodiscard]] const recording_damage& damage() const noexcept;
   [[nodiscard]] std::uint64_t position() const noexcept { return chunks_->position(); }
   [[nodiscard]] std::uint64_t size() const noexcept { return chunks_->size(); }
-  [[nodiscard]] const mcap::transport_state& transport() const noexcept { return transport_; }
 
  private:
   file_reader(std::shared_ptr<mcap::byte_source> file, std::string_view path);

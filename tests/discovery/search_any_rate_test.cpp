@@ -95,7 +95,7 @@ TEST(SearchAtAnyRate, OneWayLidarThatIsListenedTo_IsReadBySampleRate) {
     ASSERT_TRUE(done.lidar) << done.lidar.error().message();
     EXPECT_EQ(done.lidar->model->word, "x2");
     for (const model* const each : done.lidar->candidates) {
-      EXPECT_NE(each->word.substr(0, 2), "g4") << each->word;
+      EXPECT_NE(each->word, "g4");
     }
     EXPECT_EQ(done.notes, std::vector<std::string>{});
   }
