@@ -10,6 +10,7 @@
 #include "error_context.hpp"
 #include "g4lidar/core/session/model_requests.hpp"
 #include "g4lidar/setting_table.hpp"
+#include "g4lidar/source.hpp"
 
 namespace g4lidar {
 namespace {
@@ -129,7 +130,9 @@ std::optional<error> problem_with_model(const lidar_options& options, const reco
   if (stated.by == known_by::nothing) return std::nullopt;
   const std::size_t size = sample_size(stated.model->samples.layout);
   const std::size_t given_size = sample_size(given->samples.layout);
-  const bool is_sure = stated.by != known_by::samples && !options.insist_on_model;
+  const bool is_simulated = kind_of_source(options.device) == source_kind::simulated;
+  const bool insists = options.insist_on_model && !is_simulated;
+  const bool is_sure = stated.by != known_by::samples && !insists;
   if (size == given_size && !is_sure) return std::nullopt;
   std::string subject = "model: ";
   subject.append(given->word).append(", and ").append(whose).append(" states ");
@@ -137,7 +140,7 @@ std::optional<error> problem_with_model(const lidar_options& options, const reco
   if (size != given_size) {
     subject.append(", samples of ").append(std::to_string(size));
     subject.append(" bytes, not of ").append(std::to_string(given_size));
-  } else if (stated.by == known_by::recording) {
+  } else if (stated.by == known_by::recording && !is_simulated) {
     subject.append(" (")
         .append(given->word)
         .append("!, or insist_on_model, reads it all the same)");

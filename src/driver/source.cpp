@@ -111,10 +111,6 @@ class simulated_connector final : public stated_connector {
 result<std::unique_ptr<connector>> connect_simulated(const lidar_options& options, bool always) {
   auto made = sim::open_simulated(options.device);
   if (!made) return tl::unexpected(made.error());
-  const recognition stated{.model = &simulated_connector::model_of(*made), .by = known_by::user};
-  if (const auto wrong = problem_with_model({.model = options.model}, stated, "the source")) {
-    return tl::unexpected(*wrong);
-  }
   auto inner = system_connector::find(
       made->port->path(), known_of(options, &simulated_connector::model_of(*made)), always);
   if (!inner) return inner;
