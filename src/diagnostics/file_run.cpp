@@ -2,6 +2,7 @@
 // The stages of a file: a recording, or raw bytes without times.
 #include "stages.hpp"
 
+#include <algorithm>
 #include <array>
 #include <utility>
 #include <variant>
@@ -196,9 +197,12 @@ class file_run {
     report_identity(log_, device_.information, model_, 0);
     report_health(log_, device_.condition);
     stage_report motor{.stage = diagnostic_stage::motor};
-    // Two comparisons of the speed need three times its samples; a head that stands still shows it sooner.
-    const bool is_short = !measured_.was_steady() && !measured_.stands() &&
-                          measured_.tally().samples < 3 * steady_samples;
+    // Two comparisons of the speed need three times its samples, and the motor some seconds to spin up; a head that stands
+    // still shows it sooner.
+    constexpr std::uint64_t spin_up_s = 3;
+    const std::uint64_t least = std::max(3 * steady_samples, spin_up_s * first_rate_hz(model_));
+    const bool is_short =
+        !measured_.was_steady() && !measured_.stands() && measured_.tally().samples < least;
     if (is_short || counts.packets <= few_packets) {
       motor.outcome = stage_verdict::skipped;
       motor.remark = "There are too few packets.";

@@ -119,7 +119,7 @@ bool stream_statistics::is_steady() {
   return steady_;
 }
 
-bool stream_statistics::stands() const { return step_deg().value_or(0.0) <= standing_deg; }
+bool stream_statistics::stands() const { return step_deg().value_or(1.0) <= standing_deg; }
 
 void stream_statistics::take(const reading& observed) {
   tally_.arrivals.take(observed);

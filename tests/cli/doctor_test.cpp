@@ -184,6 +184,19 @@ TEST_F(Doctor, ReportsAPathThatIsNoPort) {
   EXPECT_EQ(run({"doctor", "-"}).code, 2);
 }
 
+/// Its motor spins up meanwhile, or there are only a few packets: neither is a fault.
+TEST_F(Doctor, AShortRecordingOfAHealthyLidar_HasNoFault) {
+  for (const std::string word : {"g4", "x2", "x4", "t-mini-plus", "tg15"}) {
+    for (const char* const scans : {"1", "3"}) {
+      const std::string file = path(word + scans + ".mcap");
+      ASSERT_EQ(run({"record", "-n", scans, "sim:?model=" + word, "-o", file}).code, 0);
+      EXPECT_EQ(diagnoses_of(stages_of(run({"doctor", "--json", file}))),
+                std::vector<std::string>{})
+          << word << scans;
+    }
+  }
+}
+
 TEST_F(Doctor, ReportsMissingPermission) {
   if (::geteuid() == 0) GTEST_SKIP() << "root may open everything";
   // A character device that only root may open is on every Linux.

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <fstream>
 #include <memory>
 #include <string>
 #include <vector>
@@ -221,6 +222,14 @@ TEST_F(OwnersLidar, WhatContradictsTheModelStandsInItsRecording) {
   }
   ASSERT_EQ(run({"record", "-n", "3", "sim:", "--force", "-o", walk}).code, 0);
   EXPECT_THAT(run({"info", "--json", walk}).out, HasSubstr(R"("contradictions":"")"));
+  // The number is in the raw bytes.
+  const std::string raw = path("raw.bin");
+  ASSERT_EQ(run({"sim", "--model", "g4", "--seconds", "3", "-o", path("g4.bin")}).code, 0);
+  std::ofstream(raw, std::ios::binary)
+      << std::string("\xA5\x5A\x14\0\0\0\x04\x96\x02\x03\x03", 11) + std::string(16, '\1')
+      << std::ifstream(path("g4.bin"), std::ios::binary).rdbuf();
+  ASSERT_EQ(run({"convert", "--model", "g4", raw, again, "--force"}).code, 0);
+  EXPECT_THAT(run({"info", "--json", again}).out, HasSubstr("reports the number 150"));
 }
 
 /// Its bytes did not name its model: who knows it names it when the recording is read.

@@ -46,7 +46,7 @@ device_facts facts_of_recording(const common_options& options) {
   if (facts.candidates.empty()) facts.candidates = {found.model};
   const recorded_device known = replay::reader_of(*from)->device().value_or(recorded_device{});
   const std::uint8_t number = known.information.model;
-  if (!g4lidar::detail::may_report(*found.model, number)) found.number = number;
+  if (number != 0 && !g4lidar::detail::may_report(*found.model, number)) found.number = number;
   facts.contradictions = contradictions_of(found);
   report_contradictions(facts.contradictions);
   if (number != 0) facts.information = known.information;
