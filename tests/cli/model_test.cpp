@@ -113,6 +113,9 @@ TEST_F(ModelOfAFile, APipeIsRecognisedAsAFile) {
     EXPECT_EQ(piped.err.find("read as"), piped.err.rfind("read as")) << words.front();
   }
   EXPECT_EQ(fed({"decode", "-"}, bytes).out, run({"decode", raw_}).out);
+  const outcome wrong = fed({"decode", "-", "--model", "t-mini-plus-sh"}, bytes);
+  EXPECT_EQ(wrong.code, 10) << "a pipe cannot be examined before it is read";
+  EXPECT_THAT(wrong.err, HasSubstr("its packets have samples of 3 bytes"));
   EXPECT_EQ(run({"info", path("p.mcap")}).code, 0);
   EXPECT_THAT(run({"info", path("p.mcap")}).out, HasSubstr("T-mini Pro"));
   EXPECT_EQ(run({"convert", path("p.mcap"), path("p.bin")}).code, 0);

@@ -16,6 +16,7 @@
 
 #include "cli/exit_code.hpp"
 #include "cli/logger.hpp"
+#include "g4lidar/core/layout_recogniser.hpp"
 #include "g4lidar/diagnostics/diagnostic_run.hpp"
 #include "g4lidar/recording/raw_bytes.hpp"
 
@@ -243,6 +244,14 @@ std::string why_no_packet(const stream_counts& counts, std::uint64_t bytes,
   }
   const std::string text =
       fmt::format("no point packet in the {} of {}", counted(bytes, "byte"), title);
+  g4lidar::layout_recogniser seen;  // of another model than the one that is named
+  seen.take(beginning);
+  if (const std::size_t size = seen.sample_bytes(); seen.votes(size) >= g4lidar::certain_packets) {
+    return fmt::format(
+        "{}: its packets have samples of {} bytes, and the named model has others. Name another "
+        "one with --model, or omit it.",
+        text, size);
+  }
   if (const std::string known = g4lidar::what_is(beginning); !known.empty()) {
     const bool is_plain = known.find("not the packets") != std::string::npos;
     return fmt::format("{}. {}{}", text, known,
