@@ -173,12 +173,15 @@ result<void> live_source::follow_samples() {
   return {};
 }
 
-/// Once for each start, when the packets have shown that they are those of the model: what is reported before is wrong
-/// where it becomes another one.
+/// Once for each start, when the model is stated, or the packets have shown that they are of it: what is reported before is
+/// wrong where it becomes another one.
 void live_source::judge_model() noexcept {
   if (stage_ != live_stage::scanning) {
     recognised_.live.is_judged = false;
-  } else if (!recognised_.live.is_judged && pipeline_.input().is_as_expected()) {
+    return;
+  }
+  const bool is_known = recognised_.is_stated() || pipeline_.input().is_as_expected();
+  if (!recognised_.live.is_judged && is_known) {
     recognised_.live.is_judged = true;
     recognised_.confirm(known_baud(), may_answer(options_));
     recognised_.record(connection_.from());

@@ -32,7 +32,7 @@ const option_case on_loss{{"--on-loss", "reconnect"}, "pts"};
 const option_case ends{{"--on-loss", "exit"}, "pts"};
 const option_case baud{{"--baud", "115200"}, "pts"};
 const option_case model{{"--model", "g4"}, "ptsrb-"};
-const option_case certain{{"--model", "g4!"}, "pts"};
+const option_case certain{{"--model", "g4!"}, "ptsrb-"};
 const option_case listen{{"--listen"}, "pts"};
 const option_case leave{{"--leave-dtr"}, "pts"};
 const option_case all_ports{{"--all-ports"}, "p"};

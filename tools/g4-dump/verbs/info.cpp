@@ -8,6 +8,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "cli/exit_code.hpp"
@@ -18,6 +19,7 @@
 #include "g4lidar/recording/replay.hpp"
 #include "g4lidar/source.hpp"
 #include "io/command_source.hpp"
+#include "io/interrupt.hpp"
 #include "io/output.hpp"
 #include "verbs/verbs.hpp"
 
@@ -38,7 +40,9 @@ struct device_facts {
 };
 
 device_facts facts_of_recording(const common_options& options) {
-  const auto from = value_of(connector_for(options_for(options, {})));
+  auto opened = connector_for(options_for(options, {}));
+  if (interrupt() != 0) throw interrupted();
+  const auto from = value_of(std::move(opened));
   recognition found = from->traits().recognised;
   device_facts facts{.source = options.source, .why_unknown = "not recorded"};
   facts.known_by = name_of(found.by);
