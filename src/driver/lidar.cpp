@@ -15,6 +15,7 @@
 #include "g4lidar/core/model_choice.hpp"
 #include "g4lidar/detail/enumerators.hpp"
 #include "g4lidar/source.hpp"
+#include "g4lidar/transport/tcp_port.hpp"
 #include "option_problems.hpp"
 #include "outcome_error.hpp"
 

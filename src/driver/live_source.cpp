@@ -6,6 +6,7 @@
 #include <new>
 #include <utility>
 
+#include "g4lidar/transport/tcp_port.hpp"
 #include "outcome_error.hpp"
 
 namespace g4lidar {

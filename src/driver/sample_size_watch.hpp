@@ -61,7 +61,7 @@ class sample_size_watch {
   [[nodiscard]] static constexpr std::uint32_t packets_of_turn(std::uint32_t hz,
                                                                std::uint32_t dhz) noexcept {
     constexpr std::uint32_t least = 16;
-    return std::max(least, hz * 10 / dhz / 40);
+    return dhz == 0 ? least : std::max(least, hz * 10 / dhz / 40);
   }
 
   /// Notes since when the rate has been the same, nearly: while the motor spins up, it changes with each revolution.

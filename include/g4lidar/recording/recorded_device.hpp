@@ -19,10 +19,10 @@ namespace g4lidar {
 /// Models, by their places in `models`.
 using model_set = std::bitset<models.size()>;
 /// *Pure.*
-[[nodiscard]] inline model_set set_of(std::span<const model* const> rows) noexcept {
+[[nodiscard]] inline model_set set_of(std::span<const model* const> of) noexcept {
   model_set all;
   for (std::size_t at = 0; at < models.size(); ++at) {
-    all[at] = std::find(rows.begin(), rows.end(), &models[at]) != rows.end();
+    all[at] = std::find(of.begin(), of.end(), &models[at]) != of.end();
   }
   return all;
 }
