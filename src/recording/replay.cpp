@@ -9,6 +9,7 @@
 #include <string>
 #include <utility>
 
+#include "file_reader.hpp"
 #include "g4lidar/core/stream_parser.hpp"
 #include "played_file.hpp"
 
