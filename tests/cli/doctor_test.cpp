@@ -184,7 +184,7 @@ TEST_F(Doctor, ReportsAPathThatIsNoPort) {
   EXPECT_EQ(run({"doctor", "-"}).code, 2);
 }
 
-/// Its motor spins up meanwhile, or there are only a few packets: neither is a fault.
+/// The motor spins up while it is recorded, or there are only a few packets. No fault is found.
 TEST_F(Doctor, AShortRecordingOfAHealthyLidar_HasNoFault) {
   for (const std::string word : {"g4", "x2", "x4", "t-mini-plus", "tg15"}) {
     for (const char* const scans : {"1", "3"}) {
