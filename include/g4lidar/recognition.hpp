@@ -44,8 +44,9 @@ struct recognition {
 /// The name of how a model is known, for programs: "number". Valid forever. *Pure.*
 [[nodiscard]] G4LIDAR_API std::string_view name_of(known_by what) noexcept;
 
-/// What contradicts `what`, in sentences for the user: the device reports another number, or one that no known model
-/// has; its model is not known to have this baud rate, which a number alone does not decide before packets come; it should answer and does not; its bridge changes bytes. Empty: nothing does. *Allocates.*
+/// What contradicts `what`, in sentences for the user. The device reports another number, or one that no known model has.
+/// Its model is not known to have this baud rate; where only the number names the model, this waits for its first packets
+/// (has_shown_samples). It should answer, and does not. Its bridge changes bytes. Empty: nothing does. *Allocates.*
 [[nodiscard]] G4LIDAR_API std::string contradictions_of(const recognition& what);
 
 }  // namespace g4lidar

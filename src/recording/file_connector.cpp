@@ -86,7 +86,7 @@ class file_connector final : public connector, public recording_hook {
   [[nodiscard]] played_file* file() const noexcept { return of_.get(); }
 
  private:
-  /// What contradicted, or was not known, when it was recorded, does now.
+  /// What contradicted the model when it was recorded, or was not known then, is the same now.
   [[nodiscard]] recognition read_as() const noexcept {
     const item_source& source = of_->items().source();
     recognition known = of_->device().recognised.value_or(recognition{.by = known_by::recording});

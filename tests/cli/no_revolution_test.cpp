@@ -5,8 +5,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <poll.h>
-#include <stdlib.h>
-#include <termios.h>
 #include <unistd.h>
 
 #include <atomic>
@@ -19,6 +17,7 @@
 
 #include "program.hpp"
 #include "recording.hpp"
+#include "transport/pty.hpp"
 
 namespace {
 
@@ -29,16 +28,9 @@ using ::testing::HasSubstr;
 /// Sends the same packets on a pseudo-terminal again and again, at 9 kHz on average: what a pause holds up follows it.
 class endless_device {
  public:
-  explicit endless_device(std::string data)
-      : data_(std::move(data)),
-        master_(::posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC | O_NONBLOCK)) {
-    ::grantpt(master_);
-    ::unlockpt(master_);
-    keep_ = ::open(::ptsname(master_), O_RDWR | O_NOCTTY | O_CLOEXEC);
-    termios raw{};
-    ::tcgetattr(keep_, &raw);
-    ::cfmakeraw(&raw);
-    ::tcsetattr(keep_, TCSANOW, &raw);
+  explicit endless_device(std::string data) : data_(std::move(data)) {
+    pty_.make_raw();
+    EXPECT_EQ(::fcntl(pty_.master(), F_SETFL, O_NONBLOCK), 0);
     thread_ = std::thread([this] { serve(); });
   }
   endless_device(const endless_device&) = delete;
@@ -46,10 +38,8 @@ class endless_device {
   ~endless_device() {
     ends_ = true;
     thread_.join();
-    ::close(keep_);
-    ::close(master_);
   }
-  [[nodiscard]] std::string path() const { return ::ptsname(master_); }
+  [[nodiscard]] const std::string& path() const { return pty_.path(); }
 
  private:
   void serve() {
@@ -63,7 +53,7 @@ class endless_device {
       while (static_cast<double>(all) < bytes_per_second * passed.count()) {
         // What the driver writes is not read: it answers nothing.
         const std::size_t from = all % data_.size();
-        const ssize_t sent = ::write(master_, data_.data() + from, data_.size() - from);
+        const ssize_t sent = ::write(pty_.master(), data_.data() + from, data_.size() - from);
         if (sent <= 0) break;
         all += static_cast<std::size_t>(sent);
       }
@@ -71,8 +61,7 @@ class endless_device {
   }
 
   std::string data_;
-  int master_;
-  int keep_ = -1;
+  g4lidar::test::pty pty_;
   std::atomic<bool> ends_ = false;
   std::thread thread_;
 };

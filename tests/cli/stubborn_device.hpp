@@ -2,17 +2,16 @@
 // A device on a pseudo-terminal that always sends the same answers.
 #pragma once
 
-#include <fcntl.h>
-#include <gtest/gtest.h>
 #include <poll.h>
-#include <stdlib.h>
-#include <termios.h>
 #include <unistd.h>
 
 #include <atomic>
 #include <string>
+#include <string_view>
 #include <thread>
 #include <utility>
+
+#include "transport/pty.hpp"
 
 namespace cli {
 
@@ -26,15 +25,8 @@ inline std::string device_information() {
 class stubborn_device {
  public:
   explicit stubborn_device(std::string information = device_information())
-      : information_(std::move(information)),
-        master_(::posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC)) {
-    ::grantpt(master_);
-    ::unlockpt(master_);
-    keep_ = ::open(::ptsname(master_), O_RDWR | O_NOCTTY | O_CLOEXEC);
-    termios raw{};
-    ::tcgetattr(keep_, &raw);
-    ::cfmakeraw(&raw);
-    ::tcsetattr(keep_, TCSANOW, &raw);
+      : information_(std::move(information)) {
+    pty_.make_raw();
     thread_ = std::thread([this] { serve(); });
   }
   stubborn_device(const stubborn_device&) = delete;
@@ -42,18 +34,16 @@ class stubborn_device {
   ~stubborn_device() {
     ends_ = true;
     thread_.join();
-    ::close(keep_);
-    ::close(master_);
   }
-  [[nodiscard]] std::string path() const { return ::ptsname(master_); }
+  [[nodiscard]] const std::string& path() const { return pty_.path(); }
 
  private:
   void serve() {
-    pollfd waiting{master_, POLLIN, 0};
+    pollfd waiting{pty_.master(), POLLIN, 0};
     bool has_start = false;
     while (!ends_) {
       unsigned char byte = 0;
-      if (::poll(&waiting, 1, 20) <= 0 || ::read(master_, &byte, 1) != 1) continue;
+      if (::poll(&waiting, 1, 20) <= 0 || ::read(pty_.master(), &byte, 1) != 1) continue;
       if (std::exchange(has_start, !has_start && byte == 0xA5)) answer(byte);
     }
   }
@@ -76,13 +66,10 @@ class stubborn_device {
         return;
     }
   }
-  void send(const std::string& bytes) const {
-    EXPECT_EQ(::write(master_, bytes.data(), bytes.size()), static_cast<ssize_t>(bytes.size()));
-  }
+  void send(std::string_view bytes) const { pty_.send(bytes); }
 
   std::string information_;
-  int master_;
-  int keep_ = -1;
+  g4lidar::test::pty pty_;
   std::atomic<bool> ends_ = false;
   std::thread thread_;
 };

@@ -42,6 +42,14 @@ class pty {
   /// A second descriptor of the slave, which keeps its settings while no program has it open.
   [[nodiscard]] int keep() const noexcept { return keep_; }
 
+  /// As a port that a program has set up: nothing comes back, and no byte is changed.
+  void make_raw() const {
+    termios raw{};
+    EXPECT_EQ(::tcgetattr(keep_, &raw), 0);
+    ::cfmakeraw(&raw);
+    EXPECT_EQ(::tcsetattr(keep_, TCSANOW, &raw), 0);
+  }
+
   void unplug() noexcept {
     if (master_ >= 0) ::close(master_);
     master_ = -1;

@@ -156,8 +156,8 @@ enum class recognised_by : std::uint8_t {
 /// with this number is taken first. Of several models with this number it is the one whose sample
 /// rate is nearest to that of the stream. Where nothing names it, it is the usual_model(), and basis()
 /// states so: 2-byte samples are a G4's, or an X2's where samples consist of flags alone; 3-byte
-/// samples are a T-mini Pro's, and 4-byte samples a T-mini Plus SH's. Where a device information has a number
-/// of a model with samples of another size, or of none, it is the usual one that measures so often. So a 2-byte sample in half or
+/// samples are a T-mini Pro's, and 4-byte samples a T-mini Plus SH's. Where a device information has the number
+/// of a model with samples of another size, or of no model, it is the usual one with this sample rate. So a 2-byte sample in half or
 /// whole millimetres is not recognised without a device information, and neither are 10 bits of
 /// intensity nor the correction of an SCL.
 class layout_recogniser {
@@ -252,7 +252,7 @@ class layout_recogniser {
     const auto measures = [&](const model& row) {
       return sends(row) && may_measure(row, sent->rate_hz(), sent->frequency_dhz());
     };
-    // A number of another size states that it is none of the usual ones.
+    // Its number is that of a model with samples of another size: so it may be any model with these, not the usual one.
     const model* const near =
         sent->id() == 0 ? nullptr : usual_model(measures, usual_kind::of_its_layout);
     const model* const usual =

@@ -24,9 +24,9 @@ namespace g4lidar {
          (!has_flags || has_sample_flags(layout));
 }
 
-/// Whether it measures so many samples a second at one of its rates, to a tenth. 0: not known, and true.
-/// `reported_dhz`: of the zero packets from whose frequency, in 0.1 Hz, the rate follows, so that it is another one where
-/// the model means another frequency; 0: it is as it is. *Pure.*
+/// Whether a lidar of this model may have the sample rate `hz`: at most a tenth from one of its own. 0: not known, and true.
+/// `reported_dhz`: the frequency in the zero packets, in 0.1 Hz, if `hz` was computed from it: some models report it too
+/// low, and then `hz` is too low in the same ratio. 0: `hz` was measured otherwise. *Pure.*
 [[nodiscard]] constexpr bool may_measure(const model& row, std::uint32_t hz,
                                          std::uint32_t reported_dhz = 0) noexcept {
   const double is_times = reported_dhz == 0 ? 1.0
