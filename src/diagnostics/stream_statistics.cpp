@@ -73,7 +73,6 @@ void stream_statistics::begin() {
   static_cast<void>(next_stretch());
   judging_ = true;
   between_ = {.size = max_between + 1, .is_unsure = true};  // the bytes before are not evaluated
-  backlog_ns_ = 0;
   since_packet_ = 0;
 }
 
@@ -242,7 +241,10 @@ void stream_statistics::measure_pace(const place& before, const place& now, std:
       detail::saturating_sub(now.arrival_ns, before.arrival_ns) > pause_ns;
   if (may_miss_revolutions && missing > 0) return tally_.pace.part();
   const std::size_t samples = now.samples + missing;
-  if (now.arrival_ns != 0) tally_.pace.add(samples, now.arrival_ns);  // otherwise it is not known
+  // Bytes that have waited are late: a line that begins with them is too steep.
+  const bool is_late_start = tally_.pace.is_empty() && now.arrival_ns < backlog_ns_;
+  const bool has_time = now.arrival_ns != 0;
+  if (has_time && !is_late_start) tally_.pace.add(samples, now.arrival_ns);
   tally_.turned.sum +=
       way_deg(before.last_deg, now.first_deg) + forward_deg(now.first_deg, now.last_deg);
   tally_.turned.count += static_cast<double>(samples);

@@ -76,6 +76,8 @@ class sample_pace {
   void add(std::size_t samples, std::int64_t arrival_ns) noexcept;
   /// An unknown number of samples is missing here.
   void part() noexcept;
+  /// Whether the next arrival begins a line.
+  [[nodiscard]] bool is_empty() const noexcept { return window_.span_ns() == 0; }
   /// Adds another stretch, which has ended with part().
   void add(const sample_pace& parted) noexcept;
   /// Samples per second; 0 if there is not enough data.

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cstdint>
 #include <string>
 #include <variant>
@@ -47,6 +48,22 @@ TEST(HostPause, IsNotAFaultOfTheLidar) {
       EXPECT_NEAR(number_of(done, diagnostic_stage::rate, "measured_hz"), 7.0, 0.07) << at_ms;
       EXPECT_NEAR(number_of(done, diagnostic_stage::rate, "sample_rate_hz"), 9000.0, 45.0) << at_ms;
       EXPECT_EQ(number_of(done, diagnostic_stage::loss, "samples_lost"), 0.0) << at_ms << done;
+    }
+  }
+}
+
+/// Before, at and after the begin of a measurement, with the buffer of a pseudo-terminal.
+TEST(HostPause, IsTheCauseOfWhatItsFullBufferLoses) {
+  for (const std::int64_t pause_ms : {300, 800}) {
+    for (std::int64_t at_ms = 2'000; at_ms < 6'000; at_ms += 37) {
+      sim::device simulated(sim::built_in_world(), {});
+      sim::virtual_clock clock;
+      diagnostic_options how;
+      how.measuring_time = std::chrono::milliseconds(500);
+      const examined done = examine(
+          simulated, clock, how, wrap_in<paused_host>(&clock, at_ms * ms, pause_ms * ms, 4'096U));
+      const std::string found = done.diagnoses();
+      EXPECT_TRUE(found.empty() || found == "host_busy") << pause_ms << " at " << at_ms << done;
     }
   }
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -218,28 +219,52 @@ class lying_link final : public forwarding_transport {
   response_kind about_;
 };
 
-/// Once, from a given time on, the program is suspended: nothing is read, and bytes accumulate.
+/// Once, from a given time on, the program is suspended: nothing is read, and as many bytes accumulate as
+/// there is room for. With little room they come in portions, as those of a pseudo-terminal.
 class paused_host final : public forwarding_transport {
  public:
   paused_host(std::unique_ptr<transport> inner, sim::virtual_clock* clock, std::int64_t from_ns,
-              std::int64_t pause_ns)
+              std::int64_t pause_ns, std::size_t room = 1'000'000)
       : forwarding_transport(std::move(inner)),
         clock_(clock),
         from_ns_(from_ns),
-        pause_ns_(pause_ns) {}
+        pause_ns_(pause_ns),
+        room_(room),
+        portion_ns_(room < 1'000'000 ? 4'000'000 : 0) {}
   [[nodiscard]] result<received> read(std::span<std::uint8_t> out,
                                       std::int64_t deadline_ns) noexcept override {
     if (now_ns() >= from_ns_) {
       from_ns_ = never_ns;
       clock_->advance_to(now_ns() + pause_ns_);
+      keep();
     }
-    return inner().read(out, deadline_ns);
+    if (kept_.empty()) return inner().read(out, deadline_ns);
+    constexpr std::size_t portion = 256;
+    const std::size_t count = std::min({out.size(), kept_.size(), portion});
+    clock_->advance_to(now_ns() + portion_ns_);
+    std::copy_n(kept_.begin(), count, out.begin());
+    kept_.erase(kept_.begin(), kept_.begin() + static_cast<std::ptrdiff_t>(count));
+    return received{count, now_ns()};
   }
 
  private:
+  /// What has accumulated: what there was no room for is lost.
+  void keep() {
+    std::array<std::uint8_t, 512> some{};
+    for (;;) {
+      const result<received> got = inner().read(some, now_ns());
+      if (!got || got->count == 0) break;
+      const std::size_t count = std::min(got->count, room_ - kept_.size());
+      kept_.insert(kept_.end(), some.begin(), some.begin() + static_cast<std::ptrdiff_t>(count));
+    }
+  }
+
   sim::virtual_clock* clock_;
   std::int64_t from_ns_;
   std::int64_t pause_ns_;
+  std::size_t room_;
+  std::int64_t portion_ns_;
+  std::vector<std::uint8_t> kept_;
 };
 
 }  // namespace g4lidar::test
