@@ -90,8 +90,9 @@ void report_rate(stage_log& log, const stream_statistics& measured, const device
                  const model& wanted) {
   const double frequency_hz = measured.tally().frequency_hz();
   const double rate_hz = measured.tally().sample_rate_hz();
-  // A computer that is busy again and again makes arrivals late that look like another rate.
-  const bool is_certain = !is_host_busy(measured);
+  // A computer that is busy again and again makes arrivals late that look like another rate. So do whole revolutions
+  // that are lost.
+  const bool is_certain = !is_host_busy(measured) && !is_mostly_damaged(measured);
   stage_report rate{.stage = diagnostic_stage::rate};
   const double reported_hz = true_frequency_dhz(wanted, measured.tally().reported_dhz()) / 10.0;
   if (reported_hz > 0.0) rate.add("reported_hz", reported_hz);

@@ -193,8 +193,9 @@ bool live_run::start_motor() {
   return runs;
 }
 
-// A start that it confirms with the scan header has reached it.
+// A start that it confirms with the scan header has reached it. Bytes without a packet are no motor that stands.
 diagnosis live_run::of_never_started() const noexcept {
+  if (measured_.has_become_garbage()) return diagnosis::line_noise;
   const bool lacks_power = lidar_.is_driven_by_dtr() && started_.has_header;
   return lacks_power ? diagnosis::no_motor_power : diagnosis::does_not_start;
 }

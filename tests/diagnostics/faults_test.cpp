@@ -132,14 +132,18 @@ TEST(Faults, AllKindsAreExpected) {
 
 // So much noise that hardly a packet is left: neither the motor nor the baud rate is at fault, and it is not silent.
 TEST(Faults, AVeryNoisyLine_IsNothingElse) {
+  // With the number of a model that has other samples, too.
+  const std::vector<std::pair<const char*, int>> devices{
+      {"g4", 0}, {"x4", 0}, {"t-mini-plus", 0}, {"t-mini-plus-sh", 151}, {"g4", 150}};
   for (const std::string_view fault :
-       {"flip*0.05@1s", "drop*0.04@1s", "flip*0.2@1s", "insert*0.05@1s", "flip*0.1"}) {
-    for (const char* const word : {"g4", "x4", "t-mini-plus"}) {
+       {"flip*0.05@1s", "drop*0.04@1s", "flip*0.2@1s", "insert*0.05@1s", "flip*0.1", "flip*0.03"}) {
+    for (const auto& [word, number] : devices) {
       sim::device_options options;
       ASSERT_TRUE(sim::use_model(options, word));
+      if (number != 0) options.info.model = static_cast<std::uint8_t>(number);
       const examined done = examine(options, faults_of({fault}));
-      for (const auto* const wrong :
-           {"motor_stuck", "motor_unsteady", "wrong_baud_rate", "silent", "brown_out"}) {
+      for (const auto* const wrong : {"motor_stuck", "motor_unsteady", "wrong_baud_rate", "silent",
+                                      "brown_out", "does_not_start", "frequency_off"}) {
         EXPECT_EQ(done.diagnoses().find(wrong), std::string::npos) << word << fault << done;
       }
       EXPECT_NE(done.diagnoses(), "") << word << fault << done;
