@@ -187,8 +187,8 @@ constexpr std::array<detail_words, 25> all_details{{
      "Recordings of two lidars have been joined, or the file is damaged: use the recording of each "
      "lidar by itself."},
     {"the packets of the lidar cannot be read as those of the model that was named",
-     "Omit the model (option model, --model): the lidar is then read as its packets show. Or name "
-     "the port of the other lidar."},
+     "Omit the model (option model, --model): the packets are then read as they show. Or give the "
+     "port or the file of a lidar of that model."},
     {"the bytes are those of a device of another kind, which this library does not read",
      "Use the driver of that device, or name the port of the lidar."},
     {"the system does not let this process use the device, whatever the mode of the port",

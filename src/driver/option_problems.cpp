@@ -145,6 +145,11 @@ std::optional<error> problem_with_model(const lidar_options& options, const reco
         .append(given->word)
         .append("!, or insist_on_model, reads it all the same)");
   }
+  // Of a file, as of its lidar.
+  const bool is_of_file = stated.by == known_by::recording || stated.by == known_by::samples;
+  if (size != given_size && is_of_file && !is_simulated) {
+    return error(task::opening, problem::other_device, subject, 0, error_detail::other_samples);
+  }
   return error(task::opening, problem::bad_option, subject);
 }
 

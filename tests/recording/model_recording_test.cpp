@@ -175,9 +175,10 @@ TEST_F(ModelRecording, PartsOfDifferentModelsAreRefusedByName) {
 TEST_F(ModelRecording, AnotherModelThanTheRecordedOneIsRefused) {
   const auto refused = lidar::open(recorded_as(t_mini_), {.model = model_named("x4")});
   ASSERT_FALSE(refused);
-  EXPECT_EQ(refused.error(), problem::bad_option);
+  EXPECT_EQ(refused.error(), problem::other_device);
+  EXPECT_EQ(refused.error().detail(), error_detail::other_samples);
   EXPECT_THAT(refused.error().message(), HasSubstr("model: x4, and the source states t-mini-pro"));
-  EXPECT_EQ(lidar::open(path("made.mcap"), {.model = &g4_model}).error(), problem::bad_option);
+  EXPECT_EQ(lidar::open(path("made.mcap"), {.model = &g4_model}).error(), problem::other_device);
 }
 
 /// The bytes do not name their model, so the user may, later too. Its samples must have this size.

@@ -232,8 +232,7 @@ class point_run {
           {.model = model_, .by = known_by::samples, .number = way.other_number()});
     }
     if (way.counts().packets == 0 && !out.is_closed() && interrupt() == 0) {
-      throw failure(exit_code::bad_file,
-                    why_no_packet(way.counts(), way.bytes(), beginning, in.title()));
+      throw without_packets(way.counts(), way.bytes(), beginning, in.title());
     }
     return way.counts().packets;
   }

@@ -229,9 +229,8 @@ int to_bytes(const convert_options& options, file_form from) {
 [[noreturn]] void refuse_without_packets(const convert_options& options,
                                          const recorded_result& result) {
   const std::string path = path_of_source(options.in());
-  throw failure(exit_code::bad_file,
-                why_no_packet(result.lidar.stream, result.lidar.bytes, beginning_of(path),
-                              path == "-" ? "standard input" : in_quotes(path)));
+  throw without_packets(result.lidar.stream, result.lidar.bytes, beginning_of(path),
+                        path == "-" ? "standard input" : in_quotes(path));
 }
 
 int to_recording(const convert_options& options) {

@@ -236,41 +236,39 @@ std::vector<std::uint8_t> beginning_of(const std::string& path) {
   return first;
 }
 
-std::string why_no_packet(const stream_counts& counts, std::uint64_t bytes,
-                          std::span<const std::uint8_t> beginning, const std::string& title) {
+failure without_packets(const stream_counts& counts, std::uint64_t bytes,
+                        std::span<const std::uint8_t> beginning, const std::string& title) {
+  const auto bad = [](const std::string& why) { return failure(exit_code::bad_file, why); };
   const auto found = diagnosis_of(counts, bytes);
   if (found == diagnosis::bad_file) {
-    return title + " is empty. Give raw bytes from the lidar's port while it was scanning.";
+    return bad(title + " is empty. Give raw bytes from the lidar's port while it was scanning.");
   }
   const std::string text =
       fmt::format("no point packet in the {} of {}", counted(bytes, "byte"), title);
   g4lidar::layout_recogniser seen;  // of another model than the one that is named
   seen.take(beginning);
   if (const std::size_t size = seen.sample_bytes(); seen.votes(size) >= g4lidar::certain_packets) {
-    return fmt::format(
-        "{}: its packets have samples of {} bytes, and the named model has others. Name another "
-        "one with --model, or omit it.",
-        text, size);
+    return failure(g4lidar::error(g4lidar::task::reading, g4lidar::problem::other_device,
+                                  fmt::format("{}, packets with samples of {} bytes", title, size),
+                                  0, g4lidar::error_detail::other_samples));
   }
   if (const std::string known = g4lidar::what_is(beginning); !known.empty()) {
     const bool is_plain = known.find("not the packets") != std::string::npos;
-    return fmt::format("{}. {}{}", text, known,
-                       is_plain ? " Give raw bytes from the lidar's port, or use g4-dump convert "
-                                  "for csv and jsonl."
-                                : "");
+    return bad(fmt::format("{}. {}{}", text, known,
+                           is_plain ? " Give raw bytes from the lidar's port, or use g4-dump "
+                                      "convert for csv and jsonl."
+                                    : ""));
   }
   if (found == diagnosis::unknown_bytes) {
-    return fmt::format("{}. {} Give raw bytes from the lidar's port.", text, baud_question());
+    return bad(fmt::format("{}. {} Give raw bytes from the lidar's port.", text, baud_question()));
   }
   if (2 * counts.skipped(skip_reason::bad_checksum) > bytes) {
-    return fmt::format(
-        "{}: the checksums do not fit the samples of this model. Give --model, or raw bytes that "
-        "are "
-        "not damaged.",
-        text);
+    return bad(text +
+               ": the checksums do not fit the samples of this model. Give --model, or raw bytes "
+               "that are not damaged.");
   }
-  return fmt::format("{}, only {}: the lidar was not scanning. Start it, and record again.", text,
-                     counts.responses == 1 ? "a response" : "responses");
+  return bad(fmt::format("{}, only {}: the lidar was not scanning. Start it, and record again.",
+                         text, counts.responses == 1 ? "a response" : "responses"));
 }
 
 std::string warning_about(const stream_counts& counts, std::uint64_t bytes,

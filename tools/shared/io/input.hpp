@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "cli/common_options.hpp"
+#include "cli/exit_code.hpp"
 #include "g4lidar/core/stream_counts.hpp"
 #include "g4lidar/recording/reader.hpp"
 #include "g4lidar/recording/stream_head.hpp"
@@ -96,13 +97,13 @@ inline constexpr std::size_t beginning_bytes = std::size_t{128} << 10U;
 /// The beginning of the file at `path`; nothing of what is no regular file, or cannot be read.
 [[nodiscard]] std::vector<std::uint8_t> beginning_of(const std::string& path);
 
-/// Why `bytes` bytes of `title`, which begin with `beginning`, contain no packet, and what to do: whole sentences.
-[[nodiscard]] std::string why_no_packet(const g4lidar::stream_counts& counts, std::uint64_t bytes,
-                                        std::span<const std::uint8_t> beginning,
-                                        const std::string& title);
+/// The failure of an input whose `bytes` bytes, which begin with `beginning`, contain no packet: why, and what to do.
+[[nodiscard]] failure without_packets(const g4lidar::stream_counts& counts, std::uint64_t bytes,
+                                      std::span<const std::uint8_t> beginning,
+                                      const std::string& title);
 
 /// A warning that names what else than packets an input with this beginning contains, or else that most of its bytes
-/// belong to no packet; empty if there is no reason. Nothing without packets: see why_no_packet().
+/// belong to no packet; empty if there is no reason. Nothing without packets: see without_packets().
 [[nodiscard]] std::string warning_about(const g4lidar::stream_counts& counts, std::uint64_t bytes,
                                         std::span<const std::uint8_t> beginning);
 

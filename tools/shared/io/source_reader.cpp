@@ -100,10 +100,8 @@ std::optional<g4_tool::failure> source_reader::failure_after(const error& why) c
   if (why != problem::end_of_input || !is_file) return failure_of(options_, why);
   const lidar_counts counts = reader_.counts();
   if (counts.stream.packets > 0) return std::nullopt;
-  return g4_tool::failure(
-      exit_code::bad_file,
-      why_no_packet(counts.stream, counts.bytes, beginning_of(path_of_source(options_.source)),
-                    in_quotes(options_.source)));
+  return without_packets(counts.stream, counts.bytes, beginning_of(path_of_source(options_.source)),
+                         in_quotes(options_.source));
 }
 
 }  // namespace g4_tool
