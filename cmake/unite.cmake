@@ -27,7 +27,8 @@ if(CMAKE_SCRIPT_MODE_FILE AND TO)
 endif()
 
 # g4lidar_unite_directories(<target> <maximum> <source>...): if G4LIDAR_UNITE is on, combines the
-# sources of a directory that the target has, except the named ones. The combined sources of all
+# sources of a directory that the target has, except the named ones; those of a directory of src with those of its
+# directories. The combined sources of all
 # build directories are in build/united and name no absolute path, so that ccache finds their objects
 # again, also from another clone.
 function(g4lidar_unite_directories target most)
@@ -42,6 +43,9 @@ function(g4lidar_unite_directories target most)
     set_source_files_properties("${source}" PROPERTIES HEADER_FILE_ONLY ON)
     cmake_path(GET source PARENT_PATH directory)
     cmake_path(GET directory FILENAME group)
+    if(source MATCHES "^${PROJECT_SOURCE_DIR}/src/([a-z]+)/") # with its rooms
+      set(group "${CMAKE_MATCH_1}")
+    endif()
     cmake_path(RELATIVE_PATH source BASE_DIRECTORY "${PROJECT_SOURCE_DIR}/build/united")
     list(APPEND in_${group} "${source}")
     list(APPEND groups ${group})

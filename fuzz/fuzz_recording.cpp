@@ -15,9 +15,9 @@
 #include <vector>
 
 #include "g4lidar/recording/reader.hpp"
-#include "recording/crc32.hpp"
-#include "recording/file_reader.hpp"
-#include "recording/mcap_file.hpp"
+#include "recording/mcap/crc32.hpp"
+#include "recording/mcap/file_reader.hpp"
+#include "recording/mcap/mcap_file.hpp"
 
 namespace {
 

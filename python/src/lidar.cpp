@@ -11,6 +11,7 @@
 #include <string>
 #include <tuple>
 
+#include "context.hpp"
 #include "reading_thread.hpp"
 #include "settings.hpp"
 
@@ -158,13 +159,8 @@ void bind_control(Class& made, keyword_types<Wanted...>, std::index_sequence<Ind
            "Closes the connection, and leaves the device as it is. Never waits.")
       .def("wake", &live_lidar::wake,
            "Makes a waiting call of another thread, or the next call, raise Cancelled, once. Any "
-           "thread.")
-      .def(
-          "__enter__", [](nb::handle self) { return nb::borrow(self); },
-          nb::sig("def __enter__(self) -> Lidar"))
-      .def(
-          "__exit__", [](live_lidar& on, const nb::args&) { on.close(); },
-          nb::sig("def __exit__(self, *args: object) -> None"));
+           "thread.");
+  bind_context(made, "def __enter__(self) -> Lidar", &live_lidar::close);
 }
 
 template <class Class>
@@ -206,7 +202,14 @@ void bind_reading(Class& made) {
           "The same for `async for`: it waits in the running loop of asyncio on the descriptor and "
           "the deadline of the "
           "lidar, without a thread. start() and close() block.")
-      .def("_notice", &live_lidar::notice_fileno)
+      .def("next_points", &next_points, "timeout"_a = 2.0,
+           "All points since the last call, at least one, as Scan.points. Waits and raises like "
+           "next_scan().");
+}
+
+template <class Class>
+void bind_event_loop(Class& made) {
+  made.def("_notice", &live_lidar::notice_fileno)
       .def("poll_scan", &live_lidar::poll_scan, nb::kw_only(), "newest"_a = false,
            nb::sig("def poll_scan(self, *, newest: bool = False) -> Scan | None"),
            "For an event loop: processes what has arrived. Never waits; None if no scan is "
@@ -222,11 +225,25 @@ void bind_reading(Class& made) {
            nb::sig("def next_deadline(self) -> float | None"),
            "For an event loop: the latest time for the next poll_scan(), in seconds of "
            "time.monotonic(). Ask it before "
-           "each wait. None: only the descriptor.")
-      .def("next_points", &next_points, "timeout"_a = 2.0,
-           "All points since the last call, at least one, as Scan.points. Waits and raises like "
-           "next_scan().")
-      .def("events", &events, "What happened since the last call without a request.")
+           "each wait. None: only the descriptor.");
+}
+
+nb::dict in_words(const recognition& from) {
+  nb::dict all;
+  all["model"] = std::string(from.model->word);
+  all["candidates"] = words_of(from.candidates);
+  all["known_by"] = std::string(name_of(from.by));
+  all["number"] = int{from.number};
+  all["baud"] = from.baud;
+  all["is_silent"] = from.is_silent;
+  all["was_stopped"] = from.was_stopped;
+  all["contradictions"] = contradictions_of(from);
+  return all;
+}
+
+template <class Class>
+void bind_state(Class& made) {
+  made.def("events", &events, "What happened since the last call without a request.")
       .def("counts", &counts, nb::sig("def counts(self) -> dict[str, int]"),
            "All counts since open(): 'bytes', 'points', 'scans', 'samples_lost', ... Docs: "
            "lidar_counts of the library.")
@@ -247,19 +264,7 @@ void bind_reading(Class& made) {
       .def_prop_ro(
           "recognition",
           [](live_lidar& on) {
-            return on.look([](lidar& device) {
-              const recognition now = device.recognition();
-              nb::dict all;
-              all["model"] = std::string(now.model->word);
-              all["candidates"] = words_of(now.candidates);
-              all["known_by"] = std::string(name_of(now.by));
-              all["number"] = int{now.number};
-              all["baud"] = now.baud;
-              all["is_silent"] = now.is_silent;
-              all["was_stopped"] = now.was_stopped;
-              all["contradictions"] = contradictions_of(now);
-              return all;
-            });
+            return on.look([](lidar& device) { return in_words(device.recognition()); });
           },
           nb::sig("def recognition(self) -> dict[str, object]"),
           "As which model it is read, from what that is known ('known_by': 'user', 'number', "
@@ -326,6 +331,8 @@ void bind_lidar(nb::module_& module) {
       "for one lidar wait for each other. After os.fork() the child cannot use it.");
   bind_control(made, setting_types(), setting_types::indices());
   bind_reading(made);
+  bind_event_loop(made);
+  bind_state(made);
   bind_player(module, made);
   bind_background(module, made);
   module.def("_close_all", [] {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "reading_thread.hpp"
+#include "context.hpp"
 
 #include <nanobind/stl/string_view.h>
 #include <nanobind/stl/vector.h>
@@ -97,11 +98,12 @@ void reading_thread::stop_all() {
 }
 
 void bind_background(nb::module_& module, nb::class_<live_lidar>& of) {
-  nb::class_<reading_thread>(module, "BackgroundReader",
-                             "A lidar that a thread of the library reads: made by "
-                             "Lidar.background(). Any thread may use it. A loop over it "
-                             "waits without limit, and ends at the end of a file and after stop().")
-      .def(
+  nb::class_<reading_thread> made(
+      module, "BackgroundReader",
+      "A lidar that a thread of the library reads: made by "
+      "Lidar.background(). Any thread may use it. A loop over it "
+      "waits without limit, and ends at the end of a file and after stop().");
+  made.def(
           "next_scan",
           [](reading_thread& on, double timeout) { return on.next_scan(in_milliseconds(timeout)); },
           "timeout"_a = 2.0, nb::sig("def next_scan(self, timeout: float = 2.0) -> Scan"),
@@ -140,13 +142,8 @@ void bind_background(nb::module_& module, nb::class_<live_lidar>& of) {
           "seek", [](reading_thread& on, double seconds) { on.reader().seek(in_ns(seconds)); },
           "seconds"_a, "Continues a file there, at most at one second before the end.")
       .def("stop", &reading_thread::stop,
-           "Ends the thread and stops the motor. A second call does nothing.")
-      .def(
-          "__enter__", [](nb::handle self) { return nb::borrow(self); },
-          nb::sig("def __enter__(self) -> BackgroundReader"))
-      .def(
-          "__exit__", [](reading_thread& on, const nb::args&) { on.stop(); },
-          nb::sig("def __exit__(self, *args: object) -> None"));
+           "Ends the thread and stops the motor. A second call does nothing.");
+  bind_context(made, "def __enter__(self) -> BackgroundReader", &reading_thread::stop);
   of.def(
       "background", [](live_lidar& on, bool newest) { return on.hand_over(newest); }, nb::kw_only(),
       "newest"_a = false,

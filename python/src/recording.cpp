@@ -11,6 +11,7 @@
 #include <tuple>
 #include <utility>
 
+#include "context.hpp"
 #include "errors.hpp"
 #include "g4lidar/recording/reader.hpp"
 #include "g4lidar/recording/writer.hpp"
@@ -143,7 +144,7 @@ class writer {
   bool is_closed_ = false;
 };
 
-void bind_reader(nb::module_& module) {
+void bind_item(nb::module_& module) {
   nb::class_<kept_item>(module, "RecordedItem", "One item of a recording.")
       .def_ro("kind", &kept_item::kind,
               "'from_device' (bytes of one read), 'to_device' (bytes that were sent), 'odometry', "
@@ -162,6 +163,9 @@ void bind_reader(nb::module_& module) {
             return std::tuple(pose.x_m, pose.y_m, pose.yaw_rad);
           },
           "Of 'odometry': x and y in metres, and the yaw in radians.");
+}
+
+void bind_reader(nb::module_& module) {
   nb::class_<recording>(module, "Recording",
                         "The items of a recording, in order; an iterator. For its scans and points "
                         "use open(path). One thread at a time.")
@@ -211,45 +215,26 @@ void bind_reader(nb::module_& module) {
           "Of the file, in bytes.");
 }
 
-}  // namespace
+void make_writer(writer* made, const path_text& path, bool overwrite, packing packed,
+                 scan_order order, const std::string& topic, const std::string& frame_id,
+                 const std::string& points_topic, no_return_as no_return, bool mark_near,
+                 bool near_is_minus_infinity, const std::optional<std::string>& model) {
+  recording_options how;
+  how.model = model_of(model);
+  how.overwrite = overwrite;
+  how.packed = packed;
+  how.order = order;
+  how.topic = topic;
+  how.frame_id = frame_id;
+  how.points_topic = points_topic;
+  how.grid.no_return = no_return;
+  how.grid.near_is_minus_infinity = near_is_minus_infinity;
+  if (mark_near) how.near = near_limits{};
+  new (made) writer(value_of(recording_writer::create(path.text, how)));
+}
 
-void bind_recording(nb::module_& module) {
-  bind_reader(module);
-  nb::class_<writer>(
-      module, "RecordingWriter",
-      "Writes a recording (MCAP) of bytes, scans and odometry; open(..., record=path) does it for "
-      "a lidar. Raises System "
-      "if the disk is full; what was written before stays valid. One thread at a time.")
-      .def(
-          "__init__",
-          [](writer* made, const path_text& path, bool overwrite, packing packed, scan_order order,
-             const std::string& topic, const std::string& frame_id, const std::string& points_topic,
-             no_return_as no_return, bool mark_near, bool near_is_minus_infinity,
-             const std::optional<std::string>& model) {
-            recording_options how;
-            how.model = model_of(model);
-            how.overwrite = overwrite;
-            how.packed = packed;
-            how.order = order;
-            how.topic = topic;
-            how.frame_id = frame_id;
-            how.points_topic = points_topic;
-            how.grid.no_return = no_return;
-            how.grid.near_is_minus_infinity = near_is_minus_infinity;
-            if (mark_near) how.near = near_limits{};
-            new (made) writer(value_of(recording_writer::create(path.text, how)));
-          },
-          "path"_a, nb::kw_only(), "overwrite"_a = false, "packing"_a = packing::none,
-          "order"_a = scan_order::angle, "topic"_a = "/scan", "frame_id"_a = "laser",
-          "points_topic"_a = "", "no_return"_a = no_return_as::infinity, "mark_near"_a = false,
-          "near_is_minus_infinity"_a = false, "model"_a = nb::none(),
-          "Creates the file. `packing` 'zstd' compresses it. `topic` is that of the LaserScan "
-          "messages, `points_topic` "
-          "that of PointCloud2 messages ('': none). `no_return`: what ranges without return are; "
-          "`mark_near`: whether directions are flagged as by ScanShaper. `model`: what sends "
-          "the "
-          "bytes, 'x4'; None: what the lidar that is recorded states, else 'g4'.")
-      .def(
+void bind_writing(nb::class_<writer>& made) {
+  made.def(
           "from_device",
           [](writer& into, nb::handle data, std::int64_t time_ns) {
             into.bytes_of(data, time_ns, &recording_writer::from_device);
@@ -279,19 +264,37 @@ void bind_recording(nb::module_& module) {
           "set_wall_clock",
           [](writer& into, std::int64_t ahead_ns) { into.file().set_wall_clock(ahead_ns); },
           "ahead_ns"_a,
-          "From now on the wall clock is the time of the items plus this, in nanoseconds.")
-      .def(
+          "From now on the wall clock is the time of the items plus this, in nanoseconds.");
+}
+
+}  // namespace
+
+void bind_recording(nb::module_& module) {
+  bind_item(module);
+  bind_reader(module);
+  nb::class_<writer> made(
+      module, "RecordingWriter",
+      "Writes a recording (MCAP) of bytes, scans and odometry; open(..., record=path) does it for "
+      "a lidar. Raises System "
+      "if the disk is full; what was written before stays valid. One thread at a time.");
+  made.def("__init__", &make_writer, "path"_a, nb::kw_only(), "overwrite"_a = false,
+           "packing"_a = packing::none, "order"_a = scan_order::angle, "topic"_a = "/scan",
+           "frame_id"_a = "laser", "points_topic"_a = "", "no_return"_a = no_return_as::infinity,
+           "mark_near"_a = false, "near_is_minus_infinity"_a = false, "model"_a = nb::none(),
+           "Creates the file. `packing` 'zstd' compresses it. `topic` is that of the LaserScan "
+           "messages, `points_topic` "
+           "that of PointCloud2 messages ('': none). `no_return`: what ranges without return are; "
+           "`mark_near`: whether directions are flagged as by ScanShaper. `model`: what sends "
+           "the "
+           "bytes, 'x4'; None: what the lidar that is recorded states, else 'g4'.");
+  bind_writing(made);
+  made.def(
           "flush", [](writer& into) { check(into.file().flush()); },
           "Passes everything to the system.")
       .def("close", &writer::close,
            "Ends the file with its summary. A second call does nothing; every other call then "
-           "raises ValueError.")
-      .def(
-          "__enter__", [](nb::handle self) { return nb::borrow(self); },
-          nb::sig("def __enter__(self) -> RecordingWriter"))
-      .def(
-          "__exit__", [](writer& into, const nb::args&) { into.close(); },
-          nb::sig("def __exit__(self, *args: object) -> None"));
+           "raises ValueError.");
+  bind_context(made, "def __enter__(self) -> RecordingWriter", &writer::close);
 }
 
 }  // namespace g4lidar::python

@@ -85,14 +85,8 @@ nb::bytes point_cloud2(const kept_scan& scan, const std::string& frame_id) {
   return nb::bytes(out.data(), out.size());
 }
 
-}  // namespace
-
-void bind_scan(nb::module_& module) {
-  using namespace nb::literals;
-  nb::class_<kept_scan>(module, "Scan",
-                        "One revolution, or a piece of one, with its points. It owns its points: "
-                        "it is valid as long as it is kept.")
-      .def_ro("points", &kept_scan::points,
+void bind_revolution(nb::class_<kept_scan>& made) {
+  made.def_ro("points", &kept_scan::points,
               "The points in the order of measurement: a structured array with the dtype "
               "POINT_DTYPE. `angle_deg`: "
               "clockwise degrees in [0, 360) from the cable exit; `range_mm`: millimetres, 0 for "
@@ -111,8 +105,11 @@ void bind_scan(nb::module_& module) {
       .def_prop_ro(
           "is_piece", [](const kept_scan& s) { return s.about.is_piece(); },
           "Whether it is only a part of a turn. All other scans are revolutions, although data may "
-          "be lost.")
-      .def_prop_ro(
+          "be lost.");
+}
+
+void bind_measurement(nb::class_<kept_scan>& made) {
+  made.def_prop_ro(
           "model", [](const kept_scan& s) { return s.about.model->word; },
           "The model of the lidar: 'g4', 'x4', ...")
       .def_prop_ro(
@@ -147,8 +144,13 @@ void bind_scan(nb::module_& module) {
           "did not.")
       .def_ro("measured_frequency_hz", &kept_scan::measured_frequency_hz,
               "The measured rotation frequency, in Hz; 0 if it cannot be determined.")
-      .def_ro("measured_sample_rate_hz", &kept_scan::measured_sample_rate_hz, "Samples per second.")
-      .def(
+      .def_ro("measured_sample_rate_hz", &kept_scan::measured_sample_rate_hz,
+              "Samples per second.");
+}
+
+void bind_conversions(nb::class_<kept_scan>& made) {
+  using namespace nb::literals;
+  made.def(
           "xy",
           [](const kept_scan& s, frame to) {
             return to_xy_array(s.points, to, s.about.model->turn_deg);
@@ -181,8 +183,19 @@ void bind_scan(nb::module_& module) {
            "ROS 2, zenoh and MCAP.")
       .def("point_cloud2", &point_cloud2, "frame_id"_a = "laser",
            "The returns as a sensor_msgs/msg/PointCloud2 in CDR: x, y, z in metres, t in "
-           "nanoseconds since the stamp.")
-      .def("__len__", [](const kept_scan& s) { return nb::len(s.points.object); })
+           "nanoseconds since the stamp.");
+}
+
+}  // namespace
+
+void bind_scan(nb::module_& module) {
+  nb::class_<kept_scan> made(module, "Scan",
+                             "One revolution, or a piece of one, with its points. It owns its "
+                             "points: it is valid as long as it is kept.");
+  bind_revolution(made);
+  bind_measurement(made);
+  bind_conversions(made);
+  made.def("__len__", [](const kept_scan& s) { return nb::len(s.points.object); })
       .def("__repr__", [](const kept_scan& s) {
         return "<g4lidar.Scan of revolution " + std::to_string(s.about.revolution) + ": " +
                std::to_string(nb::len(s.points.object)) + " points" +

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "simulator.hpp"
+#include "context.hpp"
 
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/tuple.h>
@@ -135,13 +136,19 @@ void bind_simulator(nb::module_& module) {
       return of.with([&](sim::device& device, std::int64_t) { return (device.*ask)(); });
     };
   };
-  nb::class_<simulator>(
+  const auto at_now = [](auto act) {
+    return [act](simulator& of) {
+      of.with(
+          [&](sim::device& device, std::int64_t now_ns) { return (device.*act)(now_ns), true; });
+    };
+  };
+  nb::class_<simulator> made(
       module, "Simulator",
       "A simulated lidar, for tests: open() takes it. In virtual time waiting takes "
       "no real time, and the same seed gives "
       "the same points. In real time it has a thread and a pseudo-terminal, so "
-      "any program can open its `path`.")
-      .def("__init__", &make_simulator, nb::kw_only(), "faults"_a = std::vector<std::string>{},
+      "any program can open its `path`.");
+  made.def("__init__", &make_simulator, nb::kw_only(), "faults"_a = std::vector<std::string>{},
            "virtual_time"_a = true, "options"_a,
            nb::sig("def __init__(self, *, faults: collections.abc.Sequence[str] = [], "
                    "virtual_time: bool = True, "
@@ -162,22 +169,8 @@ void bind_simulator(nb::module_& module) {
       .def_prop_ro("is_scanning", is(&sim::device::is_scanning),
                    "Whether it was started and not stopped.")
       .def_prop_ro("motor_turns", is(&sim::device::motor_turns), "Whether the motor is powered.")
-      .def(
-          "unplug",
-          [](simulator& of) {
-            of.with([](sim::device& device, std::int64_t now_ns) {
-              return device.unplug(now_ns), true;
-            });
-          },
-          "Unplugs it.")
-      .def(
-          "replug",
-          [](simulator& of) {
-            of.with([](sim::device& device, std::int64_t now_ns) {
-              return device.replug(now_ns), true;
-            });
-          },
-          "Plugs it in again.")
+      .def("unplug", at_now(&sim::device::unplug), "Unplugs it.")
+      .def("replug", at_now(&sim::device::replug), "Plugs it in again.")
       .def("commands", &commands,
            "The commands that reached it: (time in ns, code, whether it was obeyed), the oldest "
            "first.")
@@ -189,13 +182,8 @@ void bind_simulator(nb::module_& module) {
       .def("close", &simulator::close,
            "Removes its port, like an unplug. In virtual time it does nothing. A port that is not "
            "closed "
-           "exists as long as the Simulator or a lidar that open() made of it.")
-      .def(
-          "__enter__", [](nb::handle self) { return nb::borrow(self); },
-          nb::sig("def __enter__(self) -> Simulator"))
-      .def(
-          "__exit__", [](simulator& of, const nb::args&) { of.close(); },
-          nb::sig("def __exit__(self, *args: object) -> None"));
+           "exists as long as the Simulator or a lidar that open() made of it.");
+  bind_context(made, "def __enter__(self) -> Simulator", &simulator::close);
 }
 
 }  // namespace g4lidar::python

@@ -10,13 +10,13 @@
 #include <string_view>
 #include <vector>
 
-#include "driver/device_link.hpp"
 #include "g4lidar/core/command.hpp"
 #include "g4lidar/core/model.hpp"
 #include "g4lidar/core/stream_counter.hpp"
 #include "g4lidar/discovery.hpp"
 #include "g4lidar/error.hpp"
 #include "g4lidar/transport/transport.hpp"
+#include "link/device_link.hpp"
 #include "survey/stream_survey.hpp"
 
 namespace g4lidar {

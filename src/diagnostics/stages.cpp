@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "core/number_text.hpp"
-#include "discovery/model_choice.hpp"
+#include "discovery/fitting_models.hpp"
 #include "stages.hpp"
 
 namespace g4lidar {

@@ -7,10 +7,10 @@
 #include <cstdint>
 #include <variant>
 
-#include "driver/device_link.hpp"
 #include "g4lidar/core/request.hpp"
 #include "g4lidar/core/session_times.hpp"
 #include "g4lidar/error.hpp"
+#include "link/device_link.hpp"
 
 namespace g4lidar {
 

@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
+#include "fitting_models.hpp"
 #include "g4lidar/discovery.hpp"
-#include "model_choice.hpp"
 #include "survey/stream_survey.hpp"
 
 namespace g4lidar {

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <utility>
 
-#include "listening_driver.hpp"
-#include "live_driver.hpp"
-#include "replay_player.hpp"
+#include "driver/file/replay_player.hpp"
+#include "driver/live/listening_driver.hpp"
+#include "driver/live/live_driver.hpp"
 
 namespace g4lidar {
 namespace {

@@ -9,11 +9,11 @@
 #include <utility>
 #include <vector>
 
-#include "discovery/model_choice.hpp"
+#include "discovery/fitting_models.hpp"
 #include "g4lidar/device_information.hpp"
 #include "g4lidar/recognition.hpp"
 #include "g4lidar/recording/recorded_event.hpp"
-#include "sample_size_watch.hpp"
+#include "link/sample_size_watch.hpp"
 
 namespace g4lidar {
 

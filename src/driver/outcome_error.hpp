@@ -9,12 +9,12 @@
 #include <string_view>
 #include <variant>
 
-#include "connection.hpp"
+#include "driver/live/live_stage.hpp"
 #include "error_context.hpp"
 #include "g4lidar/core/model.hpp"
 #include "g4lidar/error.hpp"
 #include "g4lidar/setting_table.hpp"
-#include "live_stage.hpp"
+#include "link/connection.hpp"
 #include "survey/unrecognised_bytes.hpp"
 
 namespace g4lidar {

@@ -16,12 +16,12 @@
 #include <type_traits>
 #include <utility>
 
-#include "event_reader.hpp"
 #include "g4lidar/core/reply_watch.hpp"
 #include "g4lidar/core/scan_assembler.hpp"
 #include "g4lidar/core/sensor_clock.hpp"
 #include "g4lidar/core/stream_counter.hpp"
 #include "g4lidar/lidar.hpp"
+#include "link/event_reader.hpp"
 #include "timed_decoder.hpp"
 
 namespace g4lidar {

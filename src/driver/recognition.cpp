@@ -5,7 +5,7 @@
 #include <array>
 
 #include "core/number_text.hpp"
-#include "discovery/model_choice.hpp"
+#include "discovery/fitting_models.hpp"
 #include "g4lidar/core/model_choice.hpp"
 #include "g4lidar/lidar_options.hpp"
 #include "survey/change_signs.hpp"

@@ -9,13 +9,13 @@
 #include <utility>
 #include <vector>
 
-#include "connection.hpp"
 #include "event_queue.hpp"
 #include "g4lidar/core/session.hpp"
 #include "g4lidar/detail/saturating.hpp"
 #include "g4lidar/recording/player.hpp"
 #include "g4lidar/recording/recorded_event.hpp"
 #include "kept_recognition.hpp"
+#include "link/connection.hpp"
 #include "point_pipeline.hpp"
 #include "receiver.hpp"
 #include "spin_up.hpp"

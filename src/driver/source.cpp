@@ -14,8 +14,8 @@
 #include "g4lidar/transport/forwarding.hpp"
 #include "g4lidar/transport/tcp_port.hpp"
 #include "option_problems.hpp"
-#include "recording/byte_survey.hpp"
 #include "recording/new_file.hpp"
+#include "recording/play/byte_survey.hpp"
 #if defined(G4LIDAR_HAS_SIM)
 #include <variant>
 

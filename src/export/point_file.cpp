@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "cloud_point.hpp"
-#include "recording/crc32.hpp"
+#include "recording/mcap/crc32.hpp"
 #include "value_text.hpp"
 
 namespace g4lidar {

@@ -5,7 +5,7 @@
 #include <new>
 #include <utility>
 
-#include "file_reader.hpp"
+#include "recording/mcap/file_reader.hpp"
 
 namespace g4lidar {
 

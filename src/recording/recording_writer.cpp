@@ -6,7 +6,7 @@
 #include <cmath>
 #include <utility>
 
-#include "file_writer.hpp"
+#include "recording/mcap/file_writer.hpp"
 
 namespace g4lidar {
 namespace {

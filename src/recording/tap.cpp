@@ -5,11 +5,11 @@
 #include <string>
 #include <utility>
 
-#include "file_writer.hpp"
 #include "g4lidar/recording/recording_switch.hpp"
 #include "g4lidar/transport/forwarding.hpp"
 #include "new_file.hpp"
-#include "played_file.hpp"
+#include "recording/mcap/file_writer.hpp"
+#include "recording/play/played_file.hpp"
 
 namespace g4lidar {
 namespace {

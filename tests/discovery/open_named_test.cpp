@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "discovery/model_choice.hpp"
+#include "discovery/fitting_models.hpp"
 #include "g4lidar/lidar.hpp"
 #include "g4lidar/sim/pty_port.hpp"
 #include "search_bench.hpp"

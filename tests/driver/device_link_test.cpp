@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The link to a device: what it reads, which events it passes on, when a packet has ended.
-#include "driver/device_link.hpp"
+#include "link/device_link.hpp"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "driver/setup_sequence.hpp"
+#include "driver/live/setup_sequence.hpp"
 #include "g4lidar/detail/saturating.hpp"
 #include "g4lidar/lidar.hpp"
 #include "support/virtual_transport.hpp"

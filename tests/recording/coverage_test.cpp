@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "recording/coverage.hpp"
+#include "recording/mcap/coverage.hpp"
 
 #include <gtest/gtest.h>
 

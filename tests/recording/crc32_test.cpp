@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "recording/crc32.hpp"
+#include "recording/mcap/crc32.hpp"
 
 #include <gtest/gtest.h>
 

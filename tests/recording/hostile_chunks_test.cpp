@@ -10,8 +10,8 @@
 #include "g4lidar/recording/writer.hpp"
 #include "made_recording.hpp"
 #include "recorded_run.hpp"
-#include "recording/chunk_source.hpp"
-#include "recording/summary.hpp"
+#include "recording/mcap/chunk_source.hpp"
+#include "recording/mcap/summary.hpp"
 #include "support/hostile_mcap.hpp"
 
 namespace g4lidar::test {

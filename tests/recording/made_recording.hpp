@@ -16,7 +16,7 @@
 
 #include "g4lidar/recording/reader.hpp"
 #include "g4lidar/recording/writer.hpp"
-#include "recording/file_reader.hpp"
+#include "recording/mcap/file_reader.hpp"
 
 namespace g4lidar::test {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Single messages of a recording: valid ones are read as written, invalid ones are refused.
-#include "recording/messages.hpp"
-#include "recording/metadata.hpp"
+#include "recording/mcap/messages.hpp"
+#include "recording/mcap/metadata.hpp"
 
 #include <gtest/gtest.h>
 

@@ -8,8 +8,8 @@
 
 #include "made_recording.hpp"
 #include "recorded_run.hpp"
-#include "recording/channels.hpp"
-#include "recording/mcap_file.hpp"
+#include "recording/mcap/channels.hpp"
+#include "recording/mcap/mcap_file.hpp"
 #include "support/cdr_reader.hpp"
 #include "support/mcap_messages.hpp"
 

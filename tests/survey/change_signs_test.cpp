@@ -17,7 +17,7 @@
 #include <string_view>
 #include <vector>
 
-#include "discovery/model_choice.hpp"
+#include "discovery/fitting_models.hpp"
 #include "support/patience.hpp"
 #include "support/test_scale.hpp"
 #include "survey/streams.hpp"

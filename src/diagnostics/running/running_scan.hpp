@@ -5,13 +5,13 @@
 #include <cstdint>
 #include <optional>
 
-#include "driver/sample_size_watch.hpp"
+#include "diagnostics/link_monitor.hpp"
+#include "diagnostics/reply_statistics.hpp"
+#include "diagnostics/stream_statistics.hpp"
 #include "g4lidar/core/command.hpp"
 #include "g4lidar/detail/saturating.hpp"
 #include "g4lidar/diagnostics/running_diagnosis.hpp"
-#include "link_monitor.hpp"
-#include "reply_statistics.hpp"
-#include "stream_statistics.hpp"
+#include "link/sample_size_watch.hpp"
 
 namespace g4lidar {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "model_choice.hpp"
+#include "fitting_models.hpp"
 
 #include <algorithm>
 #include <cstddef>

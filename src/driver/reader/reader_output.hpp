@@ -7,7 +7,7 @@
 #include <tuple>
 #include <vector>
 
-#include "event_queue.hpp"
+#include "driver/event_queue.hpp"
 #include "g4lidar/background_reader.hpp"
 #include "scan_queue.hpp"
 

@@ -6,9 +6,9 @@
 #include <cstdint>
 #include <optional>
 
-#include "identity_reader.hpp"
-#include "recording/played_file.hpp"
-#include "scan_source.hpp"
+#include "driver/scan_source.hpp"
+#include "link/identity_reader.hpp"
+#include "recording/play/played_file.hpp"
 
 namespace g4lidar {
 

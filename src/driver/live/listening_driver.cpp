@@ -5,8 +5,8 @@
 #include <chrono>
 #include <utility>
 
-#include "error_context.hpp"
-#include "outcome_error.hpp"
+#include "driver/error_context.hpp"
+#include "driver/outcome_error.hpp"
 
 namespace g4lidar {
 namespace {

@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
+#include "diagnostics/link_monitor.hpp"
+#include "diagnostics/reply_statistics.hpp"
+#include "diagnostics/stages.hpp"
 #include "g4lidar/core/model.hpp"
 #include "g4lidar/discovery.hpp"
-#include "link_monitor.hpp"
-#include "reply_statistics.hpp"
-#include "stages.hpp"
 
 namespace g4lidar {
 

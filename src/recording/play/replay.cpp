@@ -9,9 +9,9 @@
 #include <string>
 #include <utility>
 
-#include "file_reader.hpp"
 #include "g4lidar/core/stream_parser.hpp"
 #include "played_file.hpp"
+#include "recording/mcap/file_reader.hpp"
 
 namespace g4lidar {
 namespace {

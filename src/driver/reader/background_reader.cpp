@@ -8,7 +8,7 @@
 
 #include "g4lidar/detail/enumerators.hpp"
 #include "reader_thread.hpp"
-#include "recording/played_file.hpp"
+#include "recording/play/played_file.hpp"
 
 namespace g4lidar {
 

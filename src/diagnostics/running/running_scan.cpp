@@ -6,7 +6,7 @@
 #include <variant>
 #include <vector>
 
-#include "discovery/model_choice.hpp"
+#include "discovery/fitting_models.hpp"
 #include "g4lidar/detail/saturating.hpp"
 
 namespace g4lidar {

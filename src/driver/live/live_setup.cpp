@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // The setup of a live device: when each step is sent, and the effects of the answers.
-#include "error_context.hpp"
+#include "driver/error_context.hpp"
+#include "driver/outcome_error.hpp"
 #include "live_driver.hpp"
-#include "outcome_error.hpp"
 
 namespace g4lidar {
 namespace {

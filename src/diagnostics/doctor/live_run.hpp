@@ -7,12 +7,12 @@
 #include <memory>
 #include <string>
 
+#include "diagnostics/link_monitor.hpp"
+#include "diagnostics/reply_statistics.hpp"
+#include "diagnostics/stages.hpp"
+#include "diagnostics/stream_statistics.hpp"
 #include "first_contact.hpp"
 #include "g4lidar/transport/transport.hpp"
-#include "link_monitor.hpp"
-#include "reply_statistics.hpp"
-#include "stages.hpp"
-#include "stream_statistics.hpp"
 
 namespace g4lidar {
 

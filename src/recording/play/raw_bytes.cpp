@@ -18,7 +18,6 @@
 #include <vector>
 
 #include "byte_survey.hpp"
-#include "format.hpp"
 #include "g4lidar/core/model_choice.hpp"
 #include "g4lidar/core/packet.hpp"
 #include "g4lidar/core/stream_parser.hpp"
@@ -26,6 +25,7 @@
 #include "g4lidar/recording/recorded_event.hpp"
 #include "g4lidar/transport/transport.hpp"
 #include "played_file.hpp"
+#include "recording/mcap/format.hpp"
 #include "transport/fd_port.hpp"
 
 namespace g4lidar {

@@ -3,7 +3,7 @@
 
 #include <utility>
 
-#include "error_context.hpp"
+#include "driver/error_context.hpp"
 #include "g4lidar/recording/recorded_device.hpp"
 
 namespace g4lidar {

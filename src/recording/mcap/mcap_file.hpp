@@ -16,8 +16,8 @@
 #include "g4lidar/error.hpp"
 #include "messages.hpp"
 #include "metadata.hpp"
-#include "new_file.hpp"
 #include "record_text.hpp"
+#include "recording/new_file.hpp"
 
 namespace g4lidar::mcap {
 

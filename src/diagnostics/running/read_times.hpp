@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <utility>
 
-#include "link_monitor.hpp"
+#include "diagnostics/link_monitor.hpp"
 
 namespace g4lidar {
 

@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: MIT
 // The stages of a file: a recording, or raw bytes without times.
-#include "stages.hpp"
+#include "diagnostics/stages.hpp"
 
 #include <algorithm>
 #include <array>
 #include <utility>
 #include <variant>
 
-#include "driver/identity_reader.hpp"
+#include "diagnostics/link_monitor.hpp"
 #include "g4lidar/core/reply_watch.hpp"
 #include "g4lidar/detail/saturating.hpp"
 #include "g4lidar/recording/raw_bytes.hpp"
 #include "g4lidar/recording/reader.hpp"
 #include "g4lidar/source.hpp"
-#include "link_monitor.hpp"
+#include "link/identity_reader.hpp"
 
 namespace g4lidar {
 namespace {

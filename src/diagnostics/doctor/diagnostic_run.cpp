@@ -17,12 +17,12 @@
 #include <string>
 #include <utility>
 
+#include "diagnostics/stages.hpp"
 #include "g4lidar/discovery.hpp"
 #include "g4lidar/source.hpp"
 #include "g4lidar/transport/serial_port.hpp"
 #include "g4lidar/transport/tcp_port.hpp"
 #include "live_run.hpp"
-#include "stages.hpp"
 #include "transport/port_holder.hpp"
 #include "transport/system_calls.hpp"
 

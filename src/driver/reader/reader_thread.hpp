@@ -10,7 +10,7 @@
 #include <optional>
 #include <thread>
 
-#include "driver.hpp"
+#include "driver/driver.hpp"
 #include "g4lidar/background_reader.hpp"
 #include "g4lidar/wall_clock.hpp"
 #include "reader_output.hpp"

@@ -5,16 +5,16 @@
 #include <atomic>
 #include <cstdint>
 
-#include "connection.hpp"
-#include "device_link.hpp"
+#include "driver/point_pipeline.hpp"
+#include "driver/receiver.hpp"
+#include "driver/spin_up.hpp"
 #include "g4lidar/core/model.hpp"
 #include "g4lidar/lidar_options.hpp"
 #include "g4lidar/recording/recorded_event.hpp"
-#include "identity_reader.hpp"
+#include "link/connection.hpp"
+#include "link/device_link.hpp"
+#include "link/identity_reader.hpp"
 #include "live_stage.hpp"
-#include "point_pipeline.hpp"
-#include "receiver.hpp"
-#include "spin_up.hpp"
 #include "survey/change_signs.hpp"
 #include "survey/unrecognised_bytes.hpp"
 

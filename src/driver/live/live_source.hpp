@@ -5,10 +5,10 @@
 #include <cstdint>
 #include <optional>
 
+#include "driver/scan_source.hpp"
 #include "live_stage.hpp"
 #include "live_stream.hpp"
 #include "reconnection.hpp"
-#include "scan_source.hpp"
 
 namespace g4lidar {
 

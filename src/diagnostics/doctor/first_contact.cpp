@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-#include "discovery/model_choice.hpp"
+#include "discovery/fitting_models.hpp"
 #include "transport/custom_baud.hpp"
 
 namespace g4lidar {

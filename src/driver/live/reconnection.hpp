@@ -6,9 +6,9 @@
 #include <cstdint>
 #include <optional>
 
-#include "connection.hpp"
-#include "error_context.hpp"
+#include "driver/error_context.hpp"
 #include "g4lidar/device_information.hpp"
+#include "link/connection.hpp"
 
 namespace g4lidar {
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <utility>
 
-#include "driver/identity_reader.hpp"
 #include "g4lidar/recognition.hpp"
+#include "link/identity_reader.hpp"
 #include "live_run.hpp"
 #include "transport/custom_baud.hpp"
 

@@ -6,8 +6,8 @@
 #include <new>
 #include <utility>
 
+#include "driver/outcome_error.hpp"
 #include "g4lidar/transport/tcp_port.hpp"
-#include "outcome_error.hpp"
 
 namespace g4lidar {
 namespace {

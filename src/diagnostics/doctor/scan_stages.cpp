@@ -6,7 +6,7 @@
 #include <variant>
 
 #include "core/time_limit.hpp"
-#include "discovery/model_choice.hpp"
+#include "discovery/fitting_models.hpp"
 #include "live_run.hpp"
 
 namespace g4lidar {
