@@ -51,6 +51,14 @@ inline std::string text_of_number(double value) {
   return {text.data(), end.ptr};
 }
 
+/// Any finite number, rounded as printf does.
+inline std::string with_decimals(double value, int decimals) {
+  std::array<char, 400> text;  // the largest double has 309 digits
+  const auto end = std::to_chars(text.data(), text.data() + text.size(), value,
+                                 std::chars_format::fixed, decimals);
+  return {text.data(), end.ptr};
+}
+
 inline std::string not_in_range(std::string_view text, double least, double most) {
   return in_quotes(text) + " is not in the range " + text_of_number(least) + " to " +
          text_of_number(most);

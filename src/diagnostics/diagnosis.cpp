@@ -6,7 +6,7 @@
 #include <cmath>
 #include <initializer_list>
 
-#include "export/value_text.hpp"
+#include "core/number_text.hpp"
 #include "g4lidar/detail/enumerators.hpp"
 
 namespace g4lidar {

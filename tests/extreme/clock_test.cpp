@@ -16,7 +16,6 @@
 #include "g4lidar/core/scan_assembler.hpp"
 #include "g4lidar/core/sensor_clock.hpp"
 #include "g4lidar/core/session.hpp"
-#include "g4lidar/export/time_shift.hpp"
 #include "g4lidar/wall_clock.hpp"
 #include "numbers.hpp"
 #include "support/packet_maker.hpp"
@@ -223,16 +222,7 @@ TEST(ExtremeClock, Session) {
   });
 }
 
-TEST(ExtremeClock, Shifts) {
-  many_times([](test::dice& random) {
-    time_shift shift(any<time_style>(random), any<std::int64_t>(random));
-    shift.arrived(any<std::int64_t>(random));
-    for (int i = 0; i < 5; ++i) {
-      use(shift.of(any<std::int64_t>(random)));
-      shift.set_wall_ahead(any<std::int64_t>(random));
-      use(shift.changes_nothing());
-    }
-  });
+TEST(ExtremeClock, WallClock) {
   const wall_clock wall;
   with_extremes<std::int64_t>([&](std::int64_t time_ns) { use(wall.at(time_ns)); });
 }

@@ -57,6 +57,8 @@ void record(const std::string& path, test::dice& random) {
     const bool is_usual = random.below(4) != 0;
     const std::int64_t time_ns = is_usual ? packet.complete_ns : any<std::int64_t>(random);
     writer->from_device(packet.data, time_ns);
+    if (random.below(16) == 0)
+      writer->to_device(std::array<std::uint8_t, 2>{0xA5, 0x60}, any<std::int64_t>(random));
     if (random.below(16) == 0) writer->odometry(any<stamped_odometry>(random));
     if (random.below(16) == 0) {
       writer->event({.what = any<recorded_event::kind>(random),
@@ -190,6 +192,10 @@ TEST(ExtremeLidar, Timeouts) {
   EXPECT_FALSE(opened->next_scan(lidar::milliseconds::min()));
   use(opened->next_points(lidar::milliseconds::min()).has_value());
   EXPECT_TRUE(opened->next_scan(lidar::milliseconds::max()));
+  auto none = opened->scans(lidar::milliseconds::min());
+  EXPECT_EQ(none.begin(), none.end());
+  auto all = opened->scans(lidar::milliseconds::max());
+  EXPECT_NE(all.begin(), all.end());
   EXPECT_TRUE(opened->wait_scan(lidar::milliseconds::max()));
   scan_loop loop(lidar::milliseconds::max());
   use(loop.wait(*opened, lidar::milliseconds::max()).has_value());

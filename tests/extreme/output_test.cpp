@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Messages, writers of points and decoders of bytes, with extreme numbers.
+// Messages and decoders of bytes, with extreme numbers.
 #include <array>
 #include <cstdint>
 #include <memory>
@@ -13,15 +13,6 @@
 #include "g4lidar/core/stream_counter.hpp"
 #include "g4lidar/detail/text.hpp"
 #include "g4lidar/diagnostics/diagnosis.hpp"
-#include "g4lidar/export/byte_points.hpp"
-#include "g4lidar/export/digits.hpp"
-#include "g4lidar/export/pcd.hpp"
-#include "g4lidar/export/point_file.hpp"
-#include "g4lidar/export/point_writer.hpp"
-#include "g4lidar/export/protocol_log.hpp"
-#include "g4lidar/export/shaping_writer.hpp"
-#include "g4lidar/export/slam_text.hpp"
-#include "g4lidar/export/svg.hpp"
 #include "g4lidar/message/diagnostic_array.hpp"
 #include "g4lidar/message/ros_messages.hpp"
 #include "g4lidar/recording/digest.hpp"
@@ -35,15 +26,6 @@ namespace {
 
 using namespace g4lidar;
 using namespace g4lidar::extreme;
-
-/// Counts what is written.
-class counting_sink final : public text_sink {
- public:
-  std::size_t size = 0;
-
- private:
-  void take(std::string_view text) override { size += text.size(); }
-};
 
 grid_options any_grid(test::dice& random) {
   return {any<frame>(random),        any<grid_pick>(random), any<bool>(random),
@@ -122,43 +104,12 @@ TEST(ExtremeOutput, Stamps) {
             std::numeric_limits<std::int32_t>::min());
 }
 
-TEST(ExtremeOutput, Writers) {
-  counting_sink sink;
+TEST(ExtremeOutput, TextsAndDigests) {
   many_times(
-      [&](test::dice& random) {
+      [](test::dice& random) {
         const std::vector<point> points = several<point>(random, 30);
-        const text_style style{
-            any<text_format>(random),   any<bool>(random),        any<frame>(random),
-            any<std::uint16_t>(random), any<length_unit>(random), any<bool>(random),
-            any<bool>(random),          any<bool>(random),        any<unsigned>(random) % 1000};
-        const scan_record record{any_scan(random, points), any<std::int64_t>(random),
-                                 any<double>(random), any<pose_2d>(random)};
-        std::array<std::unique_ptr<point_writer>, 4> writers{
-            make_point_writer(style),
-            make_grid_writer(style, 1 + random.below(20), any_grid(random)),
-            make_carmen_writer(2 + random.below(20), any<mounting>(random)), make_tum_writer()};
-        for (auto& writer : writers) {
-          writer->begin(sink);
-          writer->takes_scans() ? writer->write_scan(record, sink)
-                                : writer->write_points(points, sink);
-        }
-        for (const auto format : values<point_file_format>()) {
-          const auto writer = make_point_file_writer(format, any<frame>(random));
-          writer->begin(sink);
-          writer->write_points(points, sink);
-          writer->end(sink);
-          use(writer->first_bytes());
-        }
-        write_pcd(points, any<frame>(random), any<pcd_data>(random), sink);
-        write_svg(points, sink, any<std::uint16_t>(random));
-        write_tum_pose(any<stamped_pose>(random), sink);
-        const std::vector<float> ranges_m(2 + random.below(9), any<float>(random));
-        write_carmen_scan({ranges_m, any<float>(random), any<pose_2d>(random), any<pose_2d>(random),
-                           any<std::int64_t>(random)},
-                          sink);
-        sink.flush();
         for (const point& p : points) use(detail::text_of(p));
-        use(detail::text_of(record.scan));
+        use(detail::text_of(any_scan(random, points)));
         point_digest digest;
         digest.add(points);
         payload_digest payload;
@@ -167,49 +118,11 @@ TEST(ExtremeOutput, Writers) {
       1000);
 }
 
-TEST(ExtremeOutput, Shaping) {
-  counting_sink sink;
-  many_times(
-      [&](test::dice& random) {
-        writing_options how;
-        how.shape.marks.speckle = speckle_limits{.window = any<std::size_t>(random)};
-        how.sample_rate_hz = any<std::uint32_t>(random);
-        how.time = any<time_style>(random);
-        how.wall_ahead_ns = any<std::int64_t>(random);
-        how.from_ns = any<std::int64_t>(random);
-        how.to_ns = any<std::int64_t>(random);
-        how.count = any<std::uint64_t>(random);
-        shaping_writer writer(make_point_writer({.scans = any<bool>(random)}), how);
-        writer.begin(sink);
-        for (int i = 0; i < 5; ++i) {
-          const std::vector<point> points = several<point>(random, 30);
-          const scan_record record{any_scan(random, points), any<std::int64_t>(random),
-                                   any<double>(random)};
-          writer.takes_scans() ? writer.write_scan(record, sink)
-                               : writer.write_points(points, sink);
-        }
-        writer.finish(sink);
-      },
-      1000);
-}
-
 TEST(ExtremeOutput, Bytes) {
-  counting_sink sink;
   many_times(
-      [&](test::dice& random) {
+      [](test::dice& random) {
         std::vector<std::uint8_t> data(random.below(400));
         for (std::uint8_t& each : data) each = random.structural_byte();
-        const auto writer = make_point_writer({});
-        byte_points points(*writer, sink, any<std::uint32_t>(random));
-        points.take(data);
-        points.finish();
-        protocol_log log({.lines = any<std::uint64_t>(random)}, time_shift(time_style::delta, 0),
-                         sink);
-        log.from_device(data, any<std::int64_t>(random));
-        log.to_device(std::array<std::uint8_t, 2>{0xA5, random.byte()}, any<std::int64_t>(random));
-        log.remark("opened", any<std::int64_t>(random));
-        log.finish();
-        use(word_for_command(random.byte()));
         bulk_decoder decoder(any<instruction_set>(random));
         bytes rest = data;
         std::array<point, max_samples> made{};
@@ -224,30 +137,6 @@ TEST(ExtremeOutput, Bytes) {
         use(head.is_complete(any<std::int64_t>(random)));
       },
       1000);
-}
-
-TEST(ExtremeOutput, Digits) {
-  std::array<char, 128> text{};
-  with_extremes<double>([&](double x) {
-    use(digits::put_fixed<1>(text.data(), x) - text.data());
-    use(digits::put_fixed<6>(text.data(), x) - text.data());
-    use(digits::put_angle<6>(text.data(), x) - text.data());
-    use(digits::put_signed_angle<6>(text.data(), x) - text.data());
-    use(digits::nearest(x));
-  });
-  with_extremes<std::uint64_t>([&](std::uint64_t number) {
-    digits::growing_number growing;
-    EXPECT_LE(growing.put(text.data(), number) - text.data(), 20);
-    EXPECT_LE(digits::put_number(text.data(), number) - text.data(), 20);
-    use(digits::put_scaled<2>(text.data(), number) - text.data());
-  });
-  with_extremes<std::int64_t>([&](std::int64_t number) {
-    EXPECT_LE(digits::put_signed(text.data(), number) - text.data(), 20);
-  });
-  with_extremes<std::uint32_t>([&](std::uint32_t number) {
-    use(digits::put_small(text.data(), number) - text.data());
-    use(digits::eight_digits(number));
-  });
 }
 
 TEST(ExtremeOutput, Names) {

@@ -8,9 +8,6 @@
 #include <gtest/gtest.h>
 
 #include "g4lidar/export/mask.hpp"
-#include "g4lidar/export/odometry_text.hpp"
-#include "g4lidar/export/point_writer.hpp"
-#include "g4lidar/export/text_points.hpp"
 #include "g4lidar/filter_text.hpp"
 #include "g4lidar/lidar_parameters.hpp"
 #include "g4lidar/message/ros_messages.hpp"
@@ -18,6 +15,7 @@
 #include "g4lidar/sim/odometry.hpp"
 #include "g4lidar/sim/scene_caster.hpp"
 #include "g4lidar/sim/setup.hpp"
+#include "number_texts.hpp"
 #include "numbers.hpp"
 
 namespace {
@@ -25,97 +23,9 @@ namespace {
 using namespace g4lidar;
 using namespace g4lidar::extreme;
 
-const std::vector<std::string> numbers{"0",
-                                       "-0",
-                                       "1",
-                                       "-1",
-                                       "0.5",
-                                       "1e-320",
-                                       "1e-45",
-                                       "1e30",
-                                       "-1e30",
-                                       "1e308",
-                                       "1e309",
-                                       "-1e400",
-                                       "nan",
-                                       "-nan",
-                                       "inf",
-                                       "-inf",
-                                       "infinity",
-                                       "255",
-                                       "256",
-                                       "65535",
-                                       "65536",
-                                       "2147483647",
-                                       "2147483648",
-                                       "-2147483648",
-                                       "4294967295",
-                                       "4294967296",
-                                       "9223372036854775807",
-                                       "9223372036854775808",
-                                       "-9223372036854775808",
-                                       "-9223372036854775809",
-                                       "18446744073709551615",
-                                       "18446744073709551616",
-                                       "99999999",
-                                       "100000000",
-                                       "99999.9999",
-                                       "1e5",
-                                       "0x7f",
-                                       "1e",
-                                       "360",
-                                       "359.99999",
-                                       "1000",
-                                       "1e3"};
-
-std::string any_number(test::dice& random) { return numbers[random.below(numbers.size())]; }
-
-std::string any_numbers(test::dice& random, std::size_t count, const std::string& between) {
-  std::string made = any_number(random);
-  while (count-- > 1) made += between + any_number(random);
-  return made;
-}
-
-TEST(ExtremeText, Points) {
-  std::string written;
-  callback_sink sink([&](std::string_view text) { written += text; });
-  many_times([&](test::dice& random) {
-    const bool is_csv = any<bool>(random);
-    const bool is_m = any<bool>(random);
-    const std::string unit = is_m ? "range_m" : "range_mm";
-    std::string text = is_csv ? "scan,angle_deg," + unit + ",time_ns,intensity,sample_flags\n" : "";
-    for (int i = 0; i < 3; ++i) {
-      text += is_csv ? any_numbers(random, 6, ",") + "\n"
-                     : R"({"scan":)" + any_number(random) + R"(,"angle_deg":)" +
-                           any_number(random) + ",\"" + unit + "\":" + any_number(random) +
-                           R"(,"time_ns":)" + any_number(random) + "}\n";
-    }
-    const auto writer = make_point_writer({.scans = any<bool>(random)});
-    text_points reader(is_csv ? text_source::csv : text_source::jsonl, any<frame>(random), *writer,
-                       sink);
-    reader.take(text);
-    reader.finish();
-    sink.flush();
-  });
-  // What a writer can write: see point_writer.
-  point_lines lines(text_source::jsonl, frame::vendor);
-  EXPECT_TRUE(lines.read(R"({"angle_deg":1,"range_m":99999})"));
-  EXPECT_FALSE(lines.read(R"({"angle_deg":1,"range_m":100000})"));
-  EXPECT_FALSE(lines.read(R"({"angle_deg":1,"range_m":99999999})"));
-  EXPECT_FALSE(lines.read(R"({"angle_deg":1,"range_mm":1e8})"));
-  EXPECT_FALSE(lines.read(R"({"angle_deg":nan,"range_mm":1})"));
-  EXPECT_FALSE(lines.read(R"({"angle_deg":1,"range_mm":inf})"));
-}
-
-TEST(ExtremeText, MasksAndOdometry) {
+TEST(ExtremeText, Masks) {
   many_times([](test::dice& random) {
     use(parse_mask("polygon " + any_numbers(random, 6, " ")).index());
-    std::string text;
-    for (int i = 0; i < 3; ++i) text += any_numbers(random, 4, " ") + "\n";
-    const auto read = parse_odometry(text);
-    if (const auto* const path = std::get_if<std::vector<stamped_pose>>(&read)) {
-      use(pose_at(*path, any<std::int64_t>(random)));
-    }
   });
 }
 

@@ -47,19 +47,18 @@ class short_text {
   std::size_t size_ = 0;
 };
 
-/// A flag that makes a point doubtful, and its name for people and for programs.
+/// A flag that makes a point doubtful, and its name for people.
 struct doubt {
   point_flags flag;
   std::string_view words;
-  std::string_view name;
 };
 inline constexpr std::array<doubt, 6> doubts{{
-    {point_flags::too_near, "too near", "too_near"},
-    {point_flags::not_deskewed, "not deskewed", "not_deskewed"},
-    {point_flags::unlikely, "unlikely", "unlikely"},
-    {point_flags::isolated, "isolated", "isolated"},
-    {point_flags::veiling, "veiling", "veiling"},
-    {point_flags::may_be_too_near, "may be too near", "may_be_too_near"},
+    {point_flags::too_near, "too near"},
+    {point_flags::not_deskewed, "not deskewed"},
+    {point_flags::unlikely, "unlikely"},
+    {point_flags::isolated, "isolated"},
+    {point_flags::veiling, "veiling"},
+    {point_flags::may_be_too_near, "may be too near"},
 }};
 
 /// "12.345 deg, 1234.5 mm"; "12.345 deg, no return"; "12.345 deg, 60.0 mm, too near, unlikely".

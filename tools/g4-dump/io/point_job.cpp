@@ -14,9 +14,9 @@
 
 #include "cli/exit_code.hpp"
 #include "cli/logger.hpp"
-#include "g4lidar/export/byte_points.hpp"
-#include "g4lidar/export/shaping_writer.hpp"
-#include "g4lidar/export/slam_text.hpp"
+#include "export/byte_points.hpp"
+#include "export/shaping_writer.hpp"
+#include "export/slam_text.hpp"
 #include "g4lidar/wall_clock.hpp"
 #include "io/far_times.hpp"
 #include "io/input.hpp"

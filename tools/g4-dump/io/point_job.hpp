@@ -7,9 +7,9 @@
 #include <optional>
 
 #include "cli/common_options.hpp"
-#include "g4lidar/export/pcd.hpp"
-#include "g4lidar/export/point_file.hpp"
-#include "g4lidar/export/text_points.hpp"
+#include "export/pcd.hpp"
+#include "export/point_file.hpp"
+#include "export/text_points.hpp"
 #include "io/source.hpp"
 
 namespace g4_tool {

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <utility>
 
-#include "g4lidar/export/svg.hpp"
+#include "export/svg.hpp"
 #include "io/output.hpp"
 #include "io/shape_files.hpp"
 #include "point_job.hpp"

@@ -5,8 +5,8 @@
 #include <string>
 
 #include "cli/common_options.hpp"
+#include "export/text_points.hpp"
 #include "g4lidar/core/model.hpp"
-#include "g4lidar/export/text_points.hpp"
 #include "io/input.hpp"
 
 namespace g4_tool {

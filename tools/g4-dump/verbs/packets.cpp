@@ -9,7 +9,7 @@
 
 #include "cli/exit_code.hpp"
 #include "cli/logger.hpp"
-#include "g4lidar/export/protocol_log.hpp"
+#include "export/protocol_log.hpp"
 #include "g4lidar/recording/reader.hpp"
 #include "g4lidar/transport/forwarding.hpp"
 #include "g4lidar/wall_clock.hpp"

@@ -8,7 +8,7 @@
 #include <span>
 
 #include "cli/exit_code.hpp"
-#include "g4lidar/export/digits.hpp"
+#include "export/digits.hpp"
 #include "g4lidar/sim/scanner.hpp"
 #include "io/interrupt.hpp"
 #include "io/output.hpp"
@@ -20,7 +20,7 @@ namespace g4_tool {
 namespace {
 
 void write_truth(std::span<const sim::sample_truth> samples, bool has_more, output& out) {
-  using namespace g4lidar::digits;
+  using namespace digits;
   constexpr std::size_t max_row = 240;
   for (const sim::sample_truth& sample : samples) {
     char* at = out.room(max_row);

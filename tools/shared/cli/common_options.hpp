@@ -11,8 +11,6 @@
 #include <vector>
 
 #include "exit_code.hpp"
-#include "g4lidar/export/point_writer.hpp"
-#include "g4lidar/export/time_shift.hpp"
 #include "g4lidar/filter.hpp"
 #include "g4lidar/grid.hpp"
 #include "g4lidar/motion.hpp"
@@ -22,6 +20,7 @@
 #include "g4lidar/too_near.hpp"
 #include "rows.hpp"
 #include "verbs.hpp"
+#include "written_form.hpp"
 
 namespace g4_tool {
 

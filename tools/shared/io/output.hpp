@@ -10,7 +10,7 @@
 #include <string_view>
 
 #include "command_files.hpp"
-#include "g4lidar/export/text_sink.hpp"
+#include "text_sink.hpp"
 
 namespace g4_tool {
 
@@ -20,7 +20,7 @@ namespace g4_tool {
 /// A buffered output. A file on disk is written beside its place under a temporary name, and commit()
 /// renames it; without commit(), and if it could not be written, it is removed and an older file of that name remains.
 /// All else is written directly. It is a claimed_output.
-class output : public g4lidar::text_sink {
+class output : public text_sink {
  public:
   /// When a file on disk appears under its name.
   enum class appears : unsigned char {

@@ -12,9 +12,9 @@
 #include <variant>
 
 #include "cli/exit_code.hpp"
-#include "g4lidar/export/odometry_text.hpp"
 #include "g4lidar/odometry_feed.hpp"
 #include "input.hpp"
+#include "odometry_text.hpp"
 
 namespace g4_tool {
 
@@ -72,7 +72,7 @@ shaping_options shape_of(const common_options& how, const g4lidar::mask& loaded)
 std::vector<stamped_pose> load_odometry(const std::string& path) {
   const std::string what_to_give = "Give a file with lines 'time_ns x y yaw_rad'.";
   input in(path, what_to_give);
-  return parsed(g4lidar::parse_odometry(text_of(in, 1024, what_to_give)), in.title(), what_to_give);
+  return parsed(parse_odometry(text_of(in, 1024, what_to_give)), in.title(), what_to_give);
 }
 
 std::vector<stamped_odometry> load_moving_odometry(const std::string& path) {
