@@ -91,13 +91,6 @@ TEST(CArguments, NullIsAnErrorOfFunctionsWithoutErrorStruct) {
   EXPECT_EQ(g4lidar_shaper_kept(nullptr, &count), nullptr);
   EXPECT_EQ(g4lidar_shaper_for_grid(nullptr, nullptr), nullptr);
   EXPECT_EQ(g4lidar_shaper_outside(nullptr), 0U);
-  EXPECT_EQ(g4lidar_mark_isolated(nullptr, 1, nullptr, nullptr), G4LIDAR_BAD_ARGUMENT);
-  EXPECT_EQ(g4lidar_mark_veiling(nullptr, 1, nullptr, nullptr), G4LIDAR_BAD_ARGUMENT);
-  EXPECT_EQ(g4lidar_deskew_by_twist(nullptr, 0, nullptr, 0, nullptr, 180, nullptr, nullptr),
-            G4LIDAR_BAD_ARGUMENT);
-  EXPECT_EQ(g4lidar_deskew_by_path(nullptr, 0, nullptr, 2, 0, nullptr, 180, nullptr, nullptr),
-            G4LIDAR_BAD_ARGUMENT);
-  EXPECT_EQ(g4lidar_estimator_add(nullptr, nullptr, 0, 180, nullptr), G4LIDAR_BAD_ARGUMENT);
   EXPECT_EQ(g4lidar_estimator_add_of_model(nullptr, nullptr, 0, "g4", nullptr),
             G4LIDAR_BAD_ARGUMENT);
   EXPECT_EQ(g4lidar_grid_options_set_model(nullptr, "g4"), G4LIDAR_BAD_ARGUMENT);
