@@ -7,7 +7,7 @@
 packages_demo=(
   "$(if command -v make >/dev/null && ! command -v ninja >/dev/null; then echo make; else echo ninja-build; fi)"
   cmake g++ pkg-config libudev-dev libexpected-dev
-  libcli11-dev libfmt-dev libncurses-dev libzstd-dev nlohmann-json3-dev
+  libcli11-dev libfmt-dev libncurses-dev libzstd-dev nlohmann-json3-dev zlib1g-dev
 )
 
 # To build all programs.
@@ -62,6 +62,7 @@ packages_browser=(chromium chromium-driver fonts-dejavu-core python3-selenium)
 # shellcheck disable=SC2034
 packages_sysroot=(
   libc6-dev libudev-dev libexpected-dev libcli11-dev libfmt-dev nlohmann-json3-dev libzstd-dev libpython3-dev
+  zlib1g-dev
 )
 
 # Everything that .ci/run needs.

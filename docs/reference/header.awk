@@ -24,7 +24,7 @@ function is_member(line, rest) {
 /^template <>$/ { is_held = 1; next }
 is_held {
   is_held = 0
-  is_foreign = $0 ~ /(struct|bool) (std|fmt)::/
+  is_foreign = $0 ~ /bool std::/
   print (is_foreign ? "/** @cond */" : "") "template <>"
 }
 is_foreign {

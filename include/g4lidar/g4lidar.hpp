@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// All headers of this directory except eigen, fmt and ostream, in one include.
+// All headers of this directory except eigen and ostream, in one include.
 #pragma once
 
 #include "g4lidar/background_reader.hpp"
@@ -9,7 +9,6 @@
 #include "g4lidar/device_information.hpp"
 #include "g4lidar/discovery.hpp"
 #include "g4lidar/error.hpp"
-#include "g4lidar/error_code.hpp"
 #include "g4lidar/filter.hpp"
 #include "g4lidar/grid.hpp"
 #include "g4lidar/lidar.hpp"

@@ -7,9 +7,11 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "border.hpp"
+#include "core/number_text.hpp"
 #include "g4lidar/recording/replay.hpp"
 #include "g4lidar/setting_table.hpp"
 #include "g4lidar/source.hpp"
@@ -29,20 +31,31 @@ void take_time(std::int32_t given_ms, std::chrono::milliseconds& into) noexcept 
   if (given_ms != 0) into = std::chrono::milliseconds(given_ms);
 }
 
-/// The option without a valid value, or null. Times and the baud rate are checked by the lidar.
-const char* take_settings(const g4lidar_options& given, lidar_options& into) noexcept {
+/// What an option with this setting may be, in its own unit.
+std::string values_of(const setting_info& of) {
+  if (of.type == setting_type::on_off) return "a g4lidar_switch or 0";
+  if (of.type == setting_type::word) return "a g4lidar_direction or 0";
+  if (of.values.empty()) {
+    return std::to_string(of.least) + " to " + std::to_string(of.most) + ", or 0";
+  }
+  return list_of(of.values, [](const setting_value& each) { return std::to_string(each.number); }) +
+         " or 0";
+}
+
+/// The option without a valid value, and what it may be; empty if there is none. Times and the baud rate are checked
+/// by the lidar.
+std::string take_settings(const g4lidar_options& given, lidar_options& into) {
   struct row {
     std::int32_t number;
-    const char* error;
+    std::string_view name;
   };
   const std::array<row, 6> settings{{
-      {given.sample_rate_hz,
-       "sample_rate_hz: 4000, 6000, 8000, 9000, 10000, 16000, 18000, 20000 or 0"},
-      {given.frequency_chz, "frequency_chz: 300 to 1600, or 0"},
-      {given.direction, "direction: a g4lidar_direction or 0"},
-      {given.constant_frequency, "constant_frequency: a g4lidar_switch or 0"},
-      {given.low_power, "low_power: a g4lidar_switch or 0"},
-      {given.protection, "protection: a g4lidar_switch or 0"},
+      {given.sample_rate_hz, "sample_rate_hz"},
+      {given.frequency_chz, "frequency_chz"},
+      {given.direction, "direction"},
+      {given.constant_frequency, "constant_frequency"},
+      {given.low_power, "low_power"},
+      {given.protection, "protection"},
   }};
   for (std::size_t i = 0; i < settings.size(); ++i) {
     if (settings[i].number == 0) continue;  // as it is
@@ -54,7 +67,7 @@ const char* take_settings(const g4lidar_options& given, lidar_options& into) noe
     if (!value && of.type == setting_type::decimal && is_held) {
       value = scan_frequency{static_cast<std::uint16_t>(settings[i].number)};
     }
-    if (!value) return settings[i].error;
+    if (!value) return std::string(settings[i].name) + ": " + values_of(of);
     set_option(into, *value);
   }
   if (given.device_wait_ms < -1) return "device_wait_ms: 0 or more, or -1 for no limit";
@@ -65,7 +78,7 @@ const char* take_settings(const g4lidar_options& given, lidar_options& into) noe
   }
   into.tuning.pace = static_cast<read_pace>(given.pace);
   if (given.has_zero_angle) into.zero_angle = zero_angle{given.zero_angle_cdeg};
-  return nullptr;
+  return {};
 }
 
 /// What is known of a lidar, for the metadata of its recording. Nothing is changed for it.
@@ -116,7 +129,9 @@ result<void> connect(g4lidar_lidar& handle) {
 int take_lidar_options(const g4lidar_options* given, opening& into, g4lidar_error* error) {
   g4lidar_options taken = lidar_defaults;
   if (!take_options(given, taken)) return refuse(error, bad_options);
-  if (const char* const wrong = take_settings(taken, into.how)) return bad_option(error, wrong);
+  if (const std::string wrong = take_settings(taken, into.how); !wrong.empty()) {
+    return bad_option(error, wrong);
+  }
   if (!take_model(taken.model, into.how.model)) return refuse_model(error, taken.model);
   into.how.is_cancelled = question_of(taken);
   into.how.baud = taken.baud;

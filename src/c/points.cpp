@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Points, grids, outliers and masks: the functions of the core for the memory of the caller.
+// Points, grids and masks: the functions of the core for the memory of the caller.
 #include <g4lidar/c/filter.h>
 #include <g4lidar/c/point.h>
 
@@ -11,7 +11,6 @@
 #include "g4lidar/cartesian.hpp"
 #include "g4lidar/export/mask.hpp"
 #include "g4lidar/grid.hpp"
-#include "g4lidar/outliers.hpp"
 #include "ranges.hpp"
 
 using namespace g4lidar;
@@ -21,20 +20,6 @@ struct g4lidar_mask {
   mask made;
   std::vector<g4lidar_polygon> polygons;
 };
-
-namespace {
-
-template <class Mark>
-int marked_by(g4lidar_point* points, std::size_t count, const g4lidar_outlier_options* given,
-              std::size_t* marked, Mark mark) noexcept {
-  const auto limits = outliers_of(given);
-  if ((count > 0 && points == nullptr) || !limits) return G4LIDAR_BAD_ARGUMENT;
-  const std::size_t found = mark(points_of(points, count), *limits);
-  if (marked != nullptr) *marked = found;
-  return G4LIDAR_OK;
-}
-
-}  // namespace
 
 int g4lidar_to_xy(const g4lidar_point* points, size_t count, int frame, unsigned turn_deg,
                   g4lidar_xy* out) {
@@ -92,22 +77,6 @@ int g4lidar_fill_grid(const g4lidar_point* points, size_t count,
 
 void g4lidar_outlier_options_init(g4lidar_outlier_options* options, size_t size) {
   set_defaults(options, size, outlier_defaults);
-}
-
-int g4lidar_mark_isolated(g4lidar_point* points, size_t count,
-                          const g4lidar_outlier_options* options, size_t* marked) {
-  return marked_by(points, count, options, marked,
-                   [](std::span<point> all, const outlier_limits& by) {
-                     return mark_isolated(all, by.speckle, by.ends);
-                   });
-}
-
-int g4lidar_mark_veiling(g4lidar_point* points, size_t count,
-                         const g4lidar_outlier_options* options, size_t* marked) {
-  return marked_by(points, count, options, marked,
-                   [](std::span<point> all, const outlier_limits& by) {
-                     return mark_veiling(all, by.edges, by.ends);
-                   });
 }
 
 int g4lidar_mask_parse(const char* text, g4lidar_mask** made, g4lidar_error* error) {

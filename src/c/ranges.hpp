@@ -27,7 +27,7 @@ inline constexpr g4lidar_grid_options grid_defaults{sizeof(g4lidar_grid_options)
                                                     g4_model.turn_deg,
                                                     g4_model.range.max_mm};
 inline constexpr g4lidar_outlier_options outlier_defaults{
-    sizeof(g4lidar_outlier_options), 2, 1, 0.05F, -1.0F, 1, 5.0F, false, {}};
+    sizeof(g4lidar_outlier_options), 2, 1, 0.05F, -1.0F, 1, 5.0F, {}};
 inline constexpr g4lidar_near_options near_defaults{sizeof(g4lidar_near_options), 0.0F, 3, {}};
 
 [[nodiscard]] constexpr bool is_frame(int value) noexcept {
@@ -72,7 +72,6 @@ inline constexpr g4lidar_near_options near_defaults{sizeof(g4lidar_near_options)
 struct outlier_limits {
   speckle_limits speckle;
   edge_limits edges;
-  scan_ends ends;
 };
 /// The same.
 [[nodiscard]] inline std::optional<outlier_limits> outliers_of(
@@ -85,8 +84,7 @@ struct outlier_limits {
     return std::nullopt;
   }
   return outlier_limits{{taken.window, taken.near_count, taken.near_m, taken.near_ratio},
-                        {taken.edge_window, taken.least_angle_deg},
-                        taken.is_piece ? scan_ends::open : scan_ends::joined};
+                        {taken.edge_window, taken.least_angle_deg}};
 }
 
 }  // namespace g4lidar::c

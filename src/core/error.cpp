@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The text of an error, and its code.
+// The text of an error.
 #include "g4lidar/error.hpp"
 
 #include <algorithm>
@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "g4lidar/detail/enumerators.hpp"
-#include "g4lidar/error_code.hpp"
 #include "one_of.hpp"
 #include "printable_text.hpp"
 
@@ -226,39 +225,6 @@ detail_words words_of(problem what, error_detail detail) noexcept {
 constexpr std::array<std::string_view, 8> task_names{
     "finding", "opening", "configuring", "asking", "starting", "reading", "writing", "stopping"};
 
-class category final : public std::error_category {
- public:
-  [[nodiscard]] const char* name() const noexcept override { return "g4lidar"; }
-
-  [[nodiscard]] std::string message(int value) const override {
-    return is_problem(value) ? std::string(description_of(problem_of(value))) : "unknown";
-  }
-
-  [[nodiscard]] std::error_condition default_error_condition(int value) const noexcept override {
-    using known = std::pair<problem, std::errc>;
-    static constexpr std::array conditions{
-        known{problem::bad_option, std::errc::invalid_argument},
-        known{problem::no_port, std::errc::no_such_device},
-        known{problem::gone, std::errc::no_such_device},
-        known{problem::permission, std::errc::permission_denied},
-        known{problem::busy, std::errc::device_or_resource_busy},
-        known{problem::not_serial, std::errc::inappropriate_io_control_operation},
-        known{problem::cannot_connect, std::errc::host_unreachable},
-        known{problem::timeout, std::errc::timed_out},
-        known{problem::cancelled, std::errc::operation_canceled}};
-    for (const auto& [what, condition] : conditions) {
-      if (is_problem(value) && problem_of(value) == what) return condition;
-    }
-    return {value, *this};
-  }
-
- private:
-  static bool is_problem(int value) noexcept {
-    return value > 0 && static_cast<std::size_t>(value) <= problem_count;
-  }
-  static problem problem_of(int value) noexcept { return static_cast<problem>(value - 1); }
-};
-
 }  // namespace
 
 error::error(g4lidar::task doing, problem code, std::string_view subject, int system_errno,
@@ -307,10 +273,5 @@ std::string_view name_of(problem code) noexcept { return words_of(code).name; }
 std::string_view description_of(problem code) noexcept { return words_of(code).cause; }
 
 std::string_view name_of(task doing) noexcept { return detail::name_in(task_names, doing); }
-
-const std::error_category& error_category() noexcept {
-  static const category only;
-  return only;
-}
 
 }  // namespace g4lidar

@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -94,6 +95,37 @@ inline const g4lidar_scan* next_whole(const lidar& from) {
 inline const g4lidar_scan* scan_at_speed(const lidar& from) {
   for (int i = 0; i < 4; ++i) next_whole(from);
   return next_whole(from);
+}
+
+inline g4lidar_shaper_options shaper_defaults() {
+  g4lidar_shaper_options options;
+  g4lidar_shaper_options_init(&options, sizeof options);
+  return options;
+}
+
+inline shaper make(const g4lidar_shaper_options& options) {
+  g4lidar_shaper* made = nullptr;
+  g4lidar_error why;
+  EXPECT_EQ(g4lidar_shaper_create(&options, &made, &why), G4LIDAR_OK) << why.message;
+  return shaper(made);
+}
+
+inline std::span<const g4lidar_point> kept_by(const shaper& by) {
+  std::size_t count = 99;
+  const g4lidar_point* const points = g4lidar_shaper_kept(by.get(), &count);
+  return {points, count};
+}
+
+/// The points that a new shaper keeps of a piece of a revolution.
+inline std::vector<g4lidar_point> shaped(const g4lidar_shaper_options& options,
+                                         std::span<const g4lidar_point> points,
+                                         std::span<const g4lidar_stamped_pose> path = {}) {
+  const shaper by = make(options);
+  EXPECT_EQ(
+      g4lidar_shaper_shape(by.get(), points.data(), points.size(), true, path.data(), path.size()),
+      G4LIDAR_OK);
+  const auto kept = kept_by(by);
+  return {kept.begin(), kept.end()};
 }
 
 /// A directory that is removed with its files.

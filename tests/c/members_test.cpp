@@ -110,46 +110,46 @@ TEST(CMembers, NeighboursOfOutliers) {
   }
   g4lidar_outlier_options options;
   g4lidar_outlier_options_init(&options, sizeof options);
-  options.is_piece = true;
-  const auto marked = [&](auto mark) {
-    std::size_t count = 0;
-    EXPECT_EQ(mark(points.data(), points.size(), &options, &count), G4LIDAR_OK);
-    return count;
+  const auto left_out = [&](auto member) {
+    g4lidar_shaper_options by = shaper_defaults();
+    by.*member = &options;
+    return points.size() - shaped(by, points).size();
   };
-  EXPECT_EQ(marked(g4lidar_mark_isolated), 1U);
+  EXPECT_EQ(left_out(&g4lidar_shaper_options::speckle), 1U);
   options.near_m = 0.6F;
-  EXPECT_EQ(marked(g4lidar_mark_isolated), 0U);
+  EXPECT_EQ(left_out(&g4lidar_shaper_options::speckle), 0U);
   options.near_m = 0.01F;
   options.near_ratio = 0.01F;  // 2 cm at 2 m
-  EXPECT_EQ(marked(g4lidar_mark_isolated), points.size());
+  EXPECT_EQ(left_out(&g4lidar_shaper_options::speckle), points.size());
   options.near_ratio = 0.05F;
   options.near_count = 4;  // of two on each side: not at the ends, and not beside the one return
-  EXPECT_EQ(marked(g4lidar_mark_isolated), 1U + 2U + 2U + 4U);
-  const std::size_t narrow = marked(g4lidar_mark_veiling);
+  EXPECT_EQ(left_out(&g4lidar_shaper_options::speckle), 1U + 2U + 2U + 4U);
+  const std::size_t narrow = left_out(&g4lidar_shaper_options::edges);
   options.edge_window = 3;
-  EXPECT_GE(marked(g4lidar_mark_veiling), narrow);
+  EXPECT_GE(left_out(&g4lidar_shaper_options::edges), narrow);
 }
 
-g4lidar_point deskewed(float angle_deg, const g4lidar_twist& twist, const g4lidar_mounting& mount) {
-  g4lidar_point point{};
-  point.angle_deg = angle_deg;
-  point.range_mm = 3000.0F;
-  point.time_ns = second;
-  EXPECT_EQ(g4lidar_deskew_by_twist(&point, 1, &twist, 2 * second, &mount, 180, &point, nullptr),
-            G4LIDAR_OK);
-  return point;
+/// A point 3 m away at 2 s, as it was seen at 1 s; `moved` is the way since then.
+g4lidar_point deskewed(float angle_deg, const g4lidar_pose& moved, const g4lidar_mounting& mount) {
+  std::vector<g4lidar_point> points(2, at(angle_deg, 3000.0F, second));
+  points[1].time_ns = 2 * second;
+  const g4lidar_stamped_pose path[2]{{second, {0.0, 0.0, 0.0}}, {2 * second, moved}};
+  g4lidar_shaper_options options = shaper_defaults();
+  options.deskew = G4LIDAR_DESKEW_BY_PATH;
+  options.mount = &mount;
+  return shaped(options, points, path).at(1);
 }
 
 TEST(CMembers, TurnsAndMountings) {
-  // What is ahead is to the right after a quarter turn to the left: clockwise from the cable, 180 and 270.
+  // What is ahead after a quarter turn to the left was to the left: clockwise from the cable, 180 and 90.
   g4lidar_mounting mount{};
   const g4lidar_point turned = deskewed(180.0F, {0.0, 0.0, std::acos(0.0)}, mount);
-  EXPECT_NEAR(turned.angle_deg, 270.0F, 0.01F);
+  EXPECT_NEAR(turned.angle_deg, 90.0F, 0.01F);
   EXPECT_NEAR(turned.range_mm, 3000.0F, 0.02F);
-  // The robot moves to its left, where an upright lidar sees the point.
-  EXPECT_NEAR(deskewed(90.0F, {0.0, 1.0, 0.0}, mount).range_mm, 2000.0F, 0.02F);
-  mount.upside_down = true;
+  // The robot moved to its left, where an upright lidar sees the point.
   EXPECT_NEAR(deskewed(90.0F, {0.0, 1.0, 0.0}, mount).range_mm, 4000.0F, 0.02F);
+  mount.upside_down = true;
+  EXPECT_NEAR(deskewed(90.0F, {0.0, 1.0, 0.0}, mount).range_mm, 2000.0F, 0.02F);
 }
 
 }  // namespace

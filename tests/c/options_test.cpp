@@ -87,17 +87,18 @@ TEST(COptions, ReservedBytesOfPointsAreChecked) {
   });
   expect_reserved_is_checked<g4lidar_filter_options>(
       g4lidar_filter_options_init, [&](auto* options) {
-        g4lidar_shaper_options shape;
-        g4lidar_shaper_options_init(&shape, sizeof shape);
+        g4lidar_shaper_options shape = shaper_defaults();
         shape.filter = options;
         return result_of(shape);
       });
   expect_reserved_is_checked<g4lidar_outlier_options>(
-      g4lidar_outlier_options_init,
-      [&](auto* options) { return g4lidar_mark_isolated(&point, 1, options, nullptr); });
+      g4lidar_outlier_options_init, [&](auto* options) {
+        g4lidar_shaper_options shape = shaper_defaults();
+        shape.speckle = options;
+        return result_of(shape);
+      });
   expect_reserved_is_checked<g4lidar_near_options>(g4lidar_near_options_init, [&](auto* options) {
-    g4lidar_shaper_options shape;
-    g4lidar_shaper_options_init(&shape, sizeof shape);
+    g4lidar_shaper_options shape = shaper_defaults();
     shape.near_options = options;
     return result_of(shape);
   });
@@ -172,16 +173,12 @@ TEST(COptions, ReservedBytesOfRecordingsAreChecked) {
 }
 
 TEST(COptions, ReservedBytesOfAMountingAreChecked) {
-  const g4lidar_point point{};
-  const g4lidar_twist twist{};
   g4lidar_mounting mount{};
-  g4lidar_point out{};
-  const auto use = [&] {
-    return g4lidar_deskew_by_twist(&point, 1, &twist, 0, &mount, 180, &out, nullptr);
-  };
-  EXPECT_EQ(use(), G4LIDAR_OK);
+  g4lidar_shaper_options shape = shaper_defaults();
+  shape.mount = &mount;
+  EXPECT_EQ(result_of(shape), G4LIDAR_OK);
   mount.reserved[6] = 1;
-  EXPECT_EQ(use(), G4LIDAR_BAD_ARGUMENT);
+  EXPECT_EQ(result_of(shape), G4LIDAR_BAD_ARGUMENT);
   const scratch directory;
   g4lidar_recorder_options options;
   g4lidar_recorder_options_init(&options, sizeof options);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Coordinates, grids, outliers and deskewing in C, with points made by hand.
+// Coordinates, grids and twists in C.
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -87,55 +87,7 @@ TEST(CPoints, NoReturnAndTooNear_AreWhatTheOptionsSet) {
   EXPECT_EQ(fill(), G4LIDAR_BAD_ARGUMENT);
 }
 
-TEST(COutliers, MarkSingleReturnsAndThoseBetweenSurfaces) {
-  // A wall 4 m away; one return in the air; later a return between 2 m and 4 m.
-  std::vector<g4lidar_point> points;
-  for (int i = 0; i < 100; ++i) {
-    points.push_back(at(static_cast<float>(i) * 0.28F, i < 60 ? 4000.0F : 2000.0F));
-  }
-  points[20].range_mm = 1000.0F;
-  points[60].range_mm = 3000.0F;
-  g4lidar_outlier_options options;
-  g4lidar_outlier_options_init(&options, sizeof options);
-  options.is_piece = true;
-  std::size_t marked = 0;
-  ASSERT_EQ(g4lidar_mark_isolated(points.data(), 100, &options, &marked), G4LIDAR_OK);
-  EXPECT_EQ(marked, 2U);
-  EXPECT_EQ(points[20].flags, G4LIDAR_ISOLATED);
-  ASSERT_EQ(g4lidar_mark_veiling(points.data(), 100, &options, &marked), G4LIDAR_OK);
-  EXPECT_EQ(marked, 1U);
-  EXPECT_EQ(points[60].flags, G4LIDAR_ISOLATED | G4LIDAR_VEILING);
-  options.window = 17;
-  EXPECT_EQ(g4lidar_mark_isolated(points.data(), 100, &options, &marked), G4LIDAR_BAD_ARGUMENT);
-  options.window = 1;
-  options.least_angle_deg = 50.0F;
-  EXPECT_EQ(g4lidar_mark_veiling(points.data(), 100, &options, nullptr), G4LIDAR_BAD_ARGUMENT);
-}
-
 constexpr std::int64_t second = 1'000'000'000;
-
-TEST(CDeskew, MovesAPointByTheWayOfTheRobot) {
-  // 1 m/s ahead. At 1 s something is 3 m ahead of the lidar; at 2 s it is 2 m ahead.
-  const g4lidar_point ahead = at(180.0F, 3000.0F, second);
-  const g4lidar_twist twist{1.0, 0.0, 0.0};
-  g4lidar_point moved{};
-  std::size_t outside = 7;
-  ASSERT_EQ(g4lidar_deskew_by_twist(&ahead, 1, &twist, 2 * second, nullptr, 180, &moved, &outside),
-            G4LIDAR_OK);
-  EXPECT_EQ(outside, 0U);
-  EXPECT_NEAR(moved.range_mm, 2000.0F, 0.02F);
-  EXPECT_NEAR(moved.angle_deg, 180.0F, 1e-3F);
-  // The same by a path, and with a lidar that looks back.
-  const g4lidar_stamped_pose path[2] = {{0, {0.0, 0.0, 0.0}}, {3 * second, {3.0, 0.0, 0.0}}};
-  ASSERT_EQ(g4lidar_deskew_by_path(&ahead, 1, path, 2, 2 * second, nullptr, 180, &moved, &outside),
-            G4LIDAR_OK);
-  EXPECT_NEAR(moved.range_mm, 2000.0F, 0.02F);
-  g4lidar_mounting back{};
-  back.pose.yaw_rad = std::numbers::pi;
-  ASSERT_EQ(g4lidar_deskew_by_twist(&ahead, 1, &twist, 2 * second, &back, 180, &moved, &outside),
-            G4LIDAR_OK);
-  EXPECT_NEAR(moved.range_mm, 4000.0F, 0.02F);
-}
 
 // A model that is not turned looks at its 0 degrees, and its 270 degrees are to the left.
 TEST(CTurn, PointsAreTurnedByTheArgument) {
@@ -169,37 +121,9 @@ TEST(CTurn, PointsAreTurnedByTheArgument) {
   EXPECT_EQ(ranges[0], 65.535F);
   options.turn_deg = 90;
   EXPECT_EQ(g4lidar_fill_grid(points.data(), 2, &options, ranges.data(), 4), G4LIDAR_BAD_ARGUMENT);
-
-  // 1 m/s ahead.
-  const g4lidar_twist twist{1.0, 0.0, 0.0};
-  g4lidar_point moved{};
-  ASSERT_EQ(
-      g4lidar_deskew_by_twist(points.data(), 1, &twist, 2 * second, nullptr, 0, &moved, nullptr),
-      G4LIDAR_OK);
-  EXPECT_NEAR(moved.range_mm, 2000.0F, 0.02F);
-  EXPECT_EQ(
-      g4lidar_deskew_by_twist(points.data(), 1, &twist, 2 * second, nullptr, 1, &moved, nullptr),
-      G4LIDAR_BAD_ARGUMENT);
 }
 
-TEST(CDeskew, CountsWhatIsOutsideAndRefusesImpossiblePaths) {
-  g4lidar_point points[2] = {at(180.0F, 3000.0F, 0), at(180.0F, 3000.0F, 9 * second)};
-  const g4lidar_stamped_pose path[2] = {{1, {0.0, 0.0, 0.0}}, {3 * second, {3.0, 0.0, 0.0}}};
-  std::size_t outside = 0;
-  ASSERT_EQ(g4lidar_deskew_by_path(points, 2, path, 2, second, nullptr, 180, points, &outside),
-            G4LIDAR_OK);
-  EXPECT_EQ(outside, 2U);
-  EXPECT_EQ(points[0].flags, G4LIDAR_NOT_DESKEWED);
-  EXPECT_EQ(points[1].range_mm, 3000.0F);
-  const g4lidar_stamped_pose descending[2] = {path[1], path[0]};
-  EXPECT_EQ(g4lidar_deskew_by_path(points, 2, descending, 2, 1, nullptr, 180, points, nullptr),
-            G4LIDAR_BAD_ARGUMENT);
-  const g4lidar_twist impossible{std::nan(""), 0.0, 0.0};
-  EXPECT_EQ(g4lidar_deskew_by_twist(points, 2, &impossible, 1, nullptr, 180, points, nullptr),
-            G4LIDAR_BAD_ARGUMENT);
-}
-
-TEST(CDeskew, EstimatesTheTwistOfADrivingRobot) {
+TEST(CEstimator, EstimatesTheTwistOfADrivingRobot) {
   // The lidar looks ahead: its cable is behind.
   const simulator device = simulate("sim:?seed=3", nullptr, "drive forward 1.5 0.3\n");
   const lidar it = start_on(device);
@@ -210,8 +134,8 @@ TEST(CDeskew, EstimatesTheTwistOfADrivingRobot) {
   for (int i = 0; i < 20; ++i) {
     const g4lidar_scan* scan = next_whole(it);
     ASSERT_NE(scan, nullptr);
-    ASSERT_EQ(g4lidar_estimator_add(estimator, scan->points, scan->point_count, scan->turn_deg,
-                                    &estimate),
+    ASSERT_EQ(g4lidar_estimator_add_of_model(estimator, scan->points, scan->point_count,
+                                             scan->model, &estimate),
               G4LIDAR_OK);
     if (i == 0) {
       EXPECT_EQ(estimate.status, G4LIDAR_TWIST_FIRST_SCAN);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Scans that are filtered, marked and deskewed in C, with points made by hand.
+#include <cmath>
 #include <cstring>
-#include <span>
+#include <numbers>
 #include <vector>
 
 #include "c_handles.hpp"
@@ -9,25 +10,6 @@
 namespace {
 
 using namespace g4lidar_c_test;
-
-g4lidar_shaper_options shaper_defaults() {
-  g4lidar_shaper_options options;
-  g4lidar_shaper_options_init(&options, sizeof options);
-  return options;
-}
-
-shaper make(const g4lidar_shaper_options& options) {
-  g4lidar_shaper* made = nullptr;
-  g4lidar_error why;
-  EXPECT_EQ(g4lidar_shaper_create(&options, &made, &why), G4LIDAR_OK) << why.message;
-  return shaper(made);
-}
-
-std::span<const g4lidar_point> kept_by(const shaper& by) {
-  std::size_t count = 99;
-  const g4lidar_point* const points = g4lidar_shaper_kept(by.get(), &count);
-  return {points, count};
-}
 
 class CFilter : public testing::Test {
  protected:
@@ -200,6 +182,42 @@ TEST(CShaper, LeavesOutSingleReturns_OfAPieceOthersThanOfARevolution) {
   EXPECT_EQ(kept_by(made).size(), 0U);
 }
 
+TEST(CShaper, LeavesOutReturnsBetweenSurfaces_AndFlagsThemForGrids) {
+  // A wall 4 m away; one return in the air; later a return between 2 m and 4 m.
+  std::vector<g4lidar_point> points;
+  for (int i = 0; i < 100; ++i) {
+    points.push_back(at(static_cast<float>(i) * 0.28F, i < 60 ? 4000.0F : 2000.0F));
+  }
+  points[20].range_mm = 1000.0F;
+  points[60].range_mm = 3000.0F;
+  g4lidar_outlier_options limits;
+  g4lidar_outlier_options_init(&limits, sizeof limits);
+  const auto kept = [&](bool speckle, bool edges) {
+    g4lidar_shaper_options options = shaper_defaults();
+    if (speckle) options.speckle = &limits;
+    if (edges) options.edges = &limits;
+    return shaped(options, points).size();
+  };
+  EXPECT_EQ(kept(true, false), 98U);
+  EXPECT_EQ(kept(false, true), 99U);
+  EXPECT_EQ(kept(true, true), 98U);
+  g4lidar_shaper_options options = shaper_defaults();
+  options.speckle = options.edges = &limits;
+  const shaper made = make(options);
+  ASSERT_EQ(g4lidar_shaper_shape(made.get(), points.data(), 100, true, nullptr, 0), G4LIDAR_OK);
+  std::size_t count = 0;
+  const g4lidar_point* const all = g4lidar_shaper_for_grid(made.get(), &count);
+  ASSERT_EQ(count, 100U);
+  EXPECT_EQ(all[20].flags, G4LIDAR_ISOLATED | G4LIDAR_TOO_NEAR);
+  EXPECT_EQ(all[60].flags, G4LIDAR_ISOLATED | G4LIDAR_VEILING | G4LIDAR_TOO_NEAR);
+  g4lidar_shaper* none = nullptr;
+  limits.window = 17;
+  EXPECT_EQ(g4lidar_shaper_create(&options, &none, nullptr), G4LIDAR_BAD_ARGUMENT);
+  limits.window = 1;
+  limits.least_angle_deg = 50.0F;
+  EXPECT_EQ(g4lidar_shaper_create(&options, &none, nullptr), G4LIDAR_BAD_ARGUMENT);
+}
+
 TEST(CShaper, DeskewsByThePath_AndFlagsAndCountsTheRest) {
   constexpr std::int64_t second_ns = 1'000'000'000;
   // 1 m/s towards a wall straight ahead; the path ends before the last point.
@@ -227,6 +245,46 @@ TEST(CShaper, DeskewsByThePath_AndFlagsAndCountsTheRest) {
   options.deskew = 3;
   g4lidar_shaper* none = nullptr;
   EXPECT_EQ(g4lidar_shaper_create(&options, &none, nullptr), G4LIDAR_BAD_ARGUMENT);
+}
+
+constexpr std::int64_t second = 1'000'000'000;
+
+/// 1 m/s ahead from second 1 to second 2.
+constexpr g4lidar_stamped_pose ahead[2] = {{second, {0.0, 0.0, 0.0}},
+                                           {2 * second, {1.0, 0.0, 0.0}}};
+
+TEST(CShaper, DeskewsForItsMountingAndItsModel) {
+  // At 2 s something is 2 m in front of the robot, and so 3 m at 1 s.
+  g4lidar_shaper_options options = shaper_defaults();
+  options.deskew = G4LIDAR_DESKEW_BY_PATH;
+  const auto range_mm = [&](float angle_deg) {
+    const std::vector<g4lidar_point> points{at(0.0F, 0.0F, second),
+                                            at(angle_deg, 2000.0F, 2 * second)};
+    return shaped(options, points, ahead).at(1).range_mm;
+  };
+  EXPECT_NEAR(range_mm(180.0F), 3000.0F, 0.02F);
+  options.model = "t-mini-pro";  // its 0 degrees are ahead
+  EXPECT_NEAR(range_mm(0.0F), 3000.0F, 0.02F);
+  EXPECT_NEAR(range_mm(180.0F), 1000.0F, 0.02F);
+  g4lidar_mounting back{};
+  back.pose.yaw_rad = std::numbers::pi;
+  options.mount = &back;
+  EXPECT_NEAR(range_mm(180.0F), 3000.0F, 0.02F);
+}
+
+TEST(CShaper, LeavesPointsWithoutTimeWhereTheyAre_AndRefusesImpossiblePoses) {
+  g4lidar_shaper_options options = shaper_defaults();
+  options.deskew = G4LIDAR_DESKEW_BY_PATH;
+  const shaper made = make(options);
+  const std::vector<g4lidar_point> points{at(180.0F, 3000.0F, second), at(180.0F, 3000.0F, 0),
+                                          at(180.0F, 3000.0F, 9 * second)};
+  ASSERT_EQ(g4lidar_shaper_shape(made.get(), points.data(), 3, false, ahead, 2), G4LIDAR_OK);
+  EXPECT_EQ(g4lidar_shaper_outside(made.get()), 2U);
+  EXPECT_EQ(kept_by(made)[1].flags, G4LIDAR_NOT_DESKEWED);
+  EXPECT_EQ(kept_by(made)[2].range_mm, 3000.0F);
+  const g4lidar_stamped_pose impossible{second, {std::nan(""), 0.0, 0.0}};
+  EXPECT_EQ(g4lidar_shaper_shape(made.get(), points.data(), 3, false, &impossible, 1),
+            G4LIDAR_BAD_ARGUMENT);
 }
 
 }  // namespace

@@ -142,12 +142,11 @@ TEST(CTurn, IsolatedReturnsAreJudgedByTheAngleBetweenSamples) {
   for (int i = 0; i < 60; ++i) points.push_back(at(static_cast<float>(i) * 3.0F, 2000.0F));
   g4lidar_outlier_options options;
   g4lidar_outlier_options_init(&options, sizeof options);
-  std::size_t marked = 1;
-  ASSERT_EQ(g4lidar_mark_isolated(points.data(), points.size(), &options, &marked), G4LIDAR_OK);
-  EXPECT_EQ(marked, 0U);
+  g4lidar_shaper_options by = shaper_defaults();
+  by.speckle = &options;
+  EXPECT_EQ(shaped(by, points).size(), points.size());
   options.near_ratio = 0.05F;
-  ASSERT_EQ(g4lidar_mark_isolated(points.data(), points.size(), &options, &marked), G4LIDAR_OK);
-  EXPECT_EQ(marked, points.size());
+  EXPECT_EQ(shaped(by, points).size(), 0U);
 }
 
 }  // namespace

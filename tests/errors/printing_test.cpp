@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Errors, points and scans with std::ostream, {fmt} and std::error_code.
-#include <fmt/format.h>
+// Errors, points and scans with std::ostream.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -8,21 +7,18 @@
 #include <set>
 #include <sstream>
 #include <string>
-#include <system_error>
+#include <string_view>
 
-#include "g4lidar/error_code.hpp"
-#include "g4lidar/fmt.hpp"
+#include "g4lidar/error.hpp"
 #include "g4lidar/ostream.hpp"
 
 namespace g4lidar::test {
 namespace {
 
-/// The output of both.
 template <class T>
 std::string printed(const T& what) {
   std::ostringstream out;
   out << what;
-  EXPECT_EQ(fmt::format("{}", what), out.str());
   return out.str();
 }
 
@@ -31,7 +27,6 @@ TEST(Printing, OfErrors) {
   EXPECT_EQ(printed(task::configuring), "configuring");
   const error why(task::opening, problem::permission, "/dev/ttyUSB0", EACCES);
   EXPECT_EQ(printed(why), why.message());
-  EXPECT_EQ(fmt::format("{:>10}|", problem::busy), "      busy|");
 }
 
 TEST(Printing, OfPoints) {
@@ -65,30 +60,17 @@ TEST(Printing, OfScans) {
   EXPECT_EQ(printed(s), "scan 4294967295: 3 points, end_missing data_lost");
 }
 
-TEST(ErrorCode, NamesEachProblemAndIsNeverZero) {
-  std::set<std::string> messages;
-  for (std::size_t i = 0; i < problem_count; ++i) {
-    const std::error_code code = static_cast<problem>(i);
-    EXPECT_TRUE(code) << i;
-    EXPECT_STREQ(code.category().name(), "g4lidar");
-    EXPECT_EQ(code, static_cast<problem>(i));
-    messages.insert(code.message());
-  }
-  EXPECT_EQ(messages.size(), problem_count);
-  EXPECT_EQ(std::error_code(0, error_category()).message(), "unknown");
-  EXPECT_EQ(std::error_code(problem_count + 1, error_category()).message(), "unknown");
-}
-
-TEST(ErrorCode, ComparesWithStandardConditions) {
+TEST(Errors, CompareWithTheirProblem) {
   const error why(task::opening, problem::permission, "/dev/ttyUSB0", EACCES);
   EXPECT_EQ(why, problem::permission);
   EXPECT_NE(why, problem::busy);
-  EXPECT_EQ(make_error_code(why), problem::permission);
-  EXPECT_EQ(make_error_code(why), std::errc::permission_denied);
-  EXPECT_EQ(make_error_code(problem::timeout), std::errc::timed_out);
-  EXPECT_EQ(make_error_code(problem::cancelled), std::errc::operation_canceled);
-  EXPECT_EQ(make_error_code(problem::gone), std::errc::no_such_device);
-  EXPECT_NE(make_error_code(problem::garbage), std::errc::io_error);
+}
+
+TEST(Errors, EachProblemHasADescriptionOfItsOwn) {
+  std::set<std::string_view> all;
+  for (std::size_t i = 0; i < problem_count; ++i)
+    all.insert(description_of(static_cast<problem>(i)));
+  EXPECT_EQ(all.size(), problem_count);
 }
 
 }  // namespace

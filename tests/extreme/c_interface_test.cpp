@@ -61,25 +61,6 @@ TEST(ExtremeC, Points) {
     std::array<float, 64> ranges_m{};
     use(g4lidar_fill_grid(points.data(), count, &grid, ranges_m.data(), random.below(64)));
     use(g4lidar_grid_options_set_model(&grid, "x4"));
-    g4lidar_outlier_options outliers;
-    g4lidar_outlier_options_init(&outliers, sizeof outliers);
-    if (random.below(2) == 0) outliers.window = any<std::uint32_t>(random);
-    if (random.below(2) == 0) outliers.near_count = any<std::uint32_t>(random);
-    if (random.below(2) == 0) outliers.near_m = any<float>(random);
-    if (random.below(2) == 0) outliers.near_ratio = any<float>(random);
-    if (random.below(2) == 0) outliers.edge_window = any<std::uint32_t>(random);
-    if (random.below(2) == 0) outliers.least_angle_deg = any<float>(random);
-    use(g4lidar_mark_isolated(points.data(), count, &outliers, nullptr));
-    use(g4lidar_mark_veiling(points.data(), count, &outliers, nullptr));
-    const g4lidar_twist twist{any<double>(random), any<double>(random), any<double>(random)};
-    const g4lidar_mounting mount{any_pose(random), any<bool>(random), {}};
-    std::vector<g4lidar_point> out(count);
-    use(g4lidar_deskew_by_twist(points.data(), count, &twist, any<std::int64_t>(random), &mount,
-                                any_turn(random), out.data(), nullptr));
-    const auto path = any_path(random);
-    use(g4lidar_deskew_by_path(points.data(), count, path.data(), path.size(),
-                               any<std::int64_t>(random), nullptr, any_turn(random), out.data(),
-                               nullptr));
   });
 }
 
@@ -107,6 +88,18 @@ TEST(ExtremeC, Shaper) {
         g4lidar_shaper_options_init(&options, sizeof options);
         options.filter = &filter;
         if (random.below(2) == 0) options.near_options = &near;
+        g4lidar_outlier_options outliers;
+        g4lidar_outlier_options_init(&outliers, sizeof outliers);
+        if (random.below(4) == 0) outliers.window = any<std::uint32_t>(random);
+        if (random.below(4) == 0) outliers.near_count = any<std::uint32_t>(random);
+        if (random.below(4) == 0) outliers.near_m = any<float>(random);
+        if (random.below(4) == 0) outliers.near_ratio = any<float>(random);
+        if (random.below(4) == 0) outliers.edge_window = any<std::uint32_t>(random);
+        if (random.below(4) == 0) outliers.least_angle_deg = any<float>(random);
+        if (random.below(2) == 0) options.speckle = &outliers;
+        if (random.below(2) == 0) options.edges = &outliers;
+        const g4lidar_mounting mount{any_pose(random), any<bool>(random), {}};
+        if (random.below(4) == 0) options.mount = &mount;
         options.deskew = static_cast<std::int32_t>(random.below(3));
         g4lidar_shaper* shaper = nullptr;
         if (g4lidar_shaper_create(&options, &shaper, nullptr) != G4LIDAR_OK) return;
@@ -132,8 +125,6 @@ TEST(ExtremeC, Estimator) {
       [&](test::dice& random) {
         const auto points = any_points(random);
         g4lidar_twist_estimate made;
-        use(g4lidar_estimator_add(estimator, points.data(), points.size(), any_turn(random),
-                                  &made));
         use(g4lidar_estimator_add_of_model(estimator, points.data(), points.size(), "tg30", &made));
       },
       300);

@@ -105,7 +105,7 @@ TEST(ExtremeSim, Devices) {
       [&](test::dice& random) {
         sim::device_options options;
         sim::scanner_options& scanner = options.scanner;
-        const std::size_t which = random.below(25);
+        const std::size_t which = random.below(24);
         if (which == 0) set_any(scanner, &sim::scanner_options::scan_frequency_chz, random);
         if (which == 1) set_any(scanner, &sim::scanner_options::sample_rate, random);
         if (which == 2) set_any(scanner, &sim::scanner_options::samples_per_packet, random);
@@ -126,11 +126,10 @@ TEST(ExtremeSim, Devices) {
         if (which == 17) set_any(options, &sim::device_options::motor_drift_ppm, random);
         if (which == 18) set_any(options, &sim::device_options::motor_drift_period_ns, random);
         if (which == 19) set_any(options, &sim::device_options::time_packet_ns, random);
-        if (which == 20) set_any(options, &sim::device_options::protection_ns, random);
         if (which == 21) set_any(options, &sim::device_options::zero_angle_cdeg, random);
         if (which == 22) set_any(options, &sim::device_options::highest_frequency_chz, random);
         if (which == 23) set_any(options, &sim::device_options::zero_angle_divisor, random);
-        if (which == 24)
+        if (which == 20)
           scanner.format.code = {any<std::uint8_t>(random), any<std::uint8_t>(random),
                                  any<sim::lower_bits>(random)};
         use(sim::problem_with(scanner).size());

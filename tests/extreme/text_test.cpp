@@ -73,7 +73,6 @@ TEST(ExtremeText, Setups) {
                                  "highest_frequency_chz",
                                  "zero_angle_cdeg",
                                  "pitch_cdeg",
-                                 "protection_ns",
                                  "scan_frequency_chz",
                                  "sample_rate",
                                  "samples_per_packet",

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /**
  * @file
- * Options of filters for g4lidar_shaper: ranges, directions, masks; isolated returns and veiling points. The
- * functions are pure: any thread may call them at any time; they never allocate, except those for masks.
+ * Options of filters for g4lidar_shaper: ranges, directions, masks; isolated returns and veiling points. Any
+ * thread may call the functions at any time.
  */
 #ifndef G4LIDAR_C_FILTER_H
 #define G4LIDAR_C_FILTER_H
@@ -64,21 +64,11 @@ typedef struct g4lidar_outlier_options {
   float
       least_angle_deg; /**< Veiling: below this angle to the beam a neighbour is across a jump of the
                             range; above 0, at most 45; 5. */
-  bool is_piece;       /**< Whether the points are a piece of a revolution: the ends do not join. */
-  uint8_t reserved[7]; /**< 0. */
+  uint8_t reserved[8]; /**< 0. */
 } g4lidar_outlier_options;
 
 /** Sets the defaults; `size` is sizeof(g4lidar_outlier_options). */
 G4LIDAR_C_API void g4lidar_outlier_options_init(g4lidar_outlier_options* options, size_t size);
-
-/** Flags isolated returns as G4LIDAR_ISOLATED, clears that flag on all other points, and returns the
- *  number of flagged ones in `marked`, which may be NULL. */
-G4LIDAR_C_API int g4lidar_mark_isolated(g4lidar_point* points, size_t count,
-                                        const g4lidar_outlier_options* options, size_t* marked);
-
-/** The same for points between two surfaces and G4LIDAR_VEILING. */
-G4LIDAR_C_API int g4lidar_mark_veiling(g4lidar_point* points, size_t count,
-                                       const g4lidar_outlier_options* options, size_t* marked);
 
 /** Which points without return are flagged G4LIDAR_MAY_BE_TOO_NEAR: in directions where, in the last revolutions,
  *  a return came from less than twice the shortest range, and none that is farther since. That misses some such

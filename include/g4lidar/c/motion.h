@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /**
  * @file
- * Motion in the plane, and deskewing: each point as the lidar would have seen it from where it was at
- * one time. As in REP 103: x and y in metres, yaw counter-clockwise in radians. The layouts of these
- * structures do not change.
+ * Motion in the plane, and how a lidar moves, from its scans alone. As in REP 103: x and y in metres, yaw
+ * counter-clockwise in radians. The layouts of these structures do not change.
  */
 #ifndef G4LIDAR_C_MOTION_H
 #define G4LIDAR_C_MOTION_H
@@ -48,23 +47,6 @@ typedef struct g4lidar_mounting {
   uint8_t reserved[7]; /**< 0; else G4LIDAR_BAD_ARGUMENT. */
 } g4lidar_mounting;
 
-/** Deskews `count` points to `reference_ns`, while the robot moved with a constant twist, into `out`,
- *  which has room for as many and may be `points`. `mount` may be NULL: the lidar is at the origin
- *  of the robot. `outside`, which may be NULL, gets the number of points whose time is not known;
- *  they stay where they are, flagged G4LIDAR_NOT_DESKEWED. The other points must not be deskewed
- *  again. `turn_deg`: g4lidar_scan::turn_deg, 180 for a G4. Any thread; never allocates. */
-G4LIDAR_C_API int g4lidar_deskew_by_twist(const g4lidar_point* points, size_t count,
-                                          const g4lidar_twist* twist, int64_t reference_ns,
-                                          const g4lidar_mounting* mount, unsigned turn_deg,
-                                          g4lidar_point* out, size_t* outside);
-
-/** The same with poses of the robot, times ascending. Between two poses the twist is constant; points
- *  before the first and after the last pose are outside, and all are if `reference_ns` is. */
-G4LIDAR_C_API int g4lidar_deskew_by_path(const g4lidar_point* points, size_t count,
-                                         const g4lidar_stamped_pose* path, size_t path_count,
-                                         int64_t reference_ns, const g4lidar_mounting* mount,
-                                         unsigned turn_deg, g4lidar_point* out, size_t* outside);
-
 /** Estimates the motion of a lidar from its scans alone. */
 typedef struct g4lidar_estimator g4lidar_estimator;
 
@@ -92,13 +74,7 @@ typedef struct g4lidar_twist_estimate {
 G4LIDAR_C_API int g4lidar_estimator_create(g4lidar_estimator** estimator, g4lidar_error* error);
 
 /** The twist during the revolution before `points` and `points`, those of the next revolution in the
- *  order of measurement. `turn_deg`: g4lidar_scan::turn_deg, 180 for a G4. Never allocates. */
-G4LIDAR_C_API int g4lidar_estimator_add(g4lidar_estimator* estimator, const g4lidar_point* points,
-                                        size_t count, unsigned turn_deg,
-                                        g4lidar_twist_estimate* estimate);
-
-/** The same with the turn and the shortest range of a model: g4lidar_scan::model; NULL: a G4. The
- *  function above uses returns from 100 mm on, the shortest range of a G4. */
+ *  order of measurement. `model`: g4lidar_scan::model; NULL: a G4. Never allocates. */
 G4LIDAR_C_API int g4lidar_estimator_add_of_model(g4lidar_estimator* estimator,
                                                  const g4lidar_point* points, size_t count,
                                                  const char* model,

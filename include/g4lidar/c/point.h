@@ -22,8 +22,8 @@ enum g4lidar_point_flag {
   G4LIDAR_REVOLUTION_START = 4, /**< The first sample of its revolution. */
   G4LIDAR_NOT_DESKEWED = 8,     /**< Deskewing left it where it was. */
   G4LIDAR_UNLIKELY = 16,        /**< Its packet or its neighbours contradict it. */
-  G4LIDAR_ISOLATED = 32,        /**< No other return is near; set by g4lidar_mark_isolated(). */
-  G4LIDAR_VEILING = 64,         /**< Between two surfaces; set by g4lidar_mark_veiling(). */
+  G4LIDAR_ISOLATED = 32,        /**< No other return is near; set by g4lidar_shaper. */
+  G4LIDAR_VEILING = 64,         /**< Between two surfaces; set by g4lidar_shaper. */
   G4LIDAR_MAY_BE_TOO_NEAR = 128 /**< Without return, perhaps of something too near; set by
                                      g4lidar_shaper. */
 };

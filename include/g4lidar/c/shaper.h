@@ -16,17 +16,18 @@ extern "C" {
 
 /** How a shaper knows the motion by which it deskews. */
 enum g4lidar_deskewing {
-  G4LIDAR_DESKEW_NONE = 0,    /**< It does not deskew. */
-  G4LIDAR_DESKEW_BY_PATH = 1, /**< From the poses of the robot, its odometry. */
-  G4LIDAR_DESKEW_BY_SCANS = 2 /**< From the scans alone, as g4lidar_estimator_add(). */
+  G4LIDAR_DESKEW_NONE = 0, /**< It does not deskew. */
+  /** From the poses of the robot, its odometry. Between two poses the twist is constant. */
+  G4LIDAR_DESKEW_BY_PATH = 1,
+  G4LIDAR_DESKEW_BY_SCANS = 2 /**< From the scans alone, as g4lidar_estimator_add_of_model(). */
 };
 
 /** What a shaper does. By default it changes nothing. What is NULL is not done. */
 typedef struct g4lidar_shaper_options {
   size_t struct_size;                       /**< Set by g4lidar_shaper_options_init(). */
   const g4lidar_filter_options* filter;     /**< Which points are kept. */
-  const g4lidar_outlier_options* speckle;   /**< Leaves out what g4lidar_mark_isolated() flags. */
-  const g4lidar_outlier_options* edges;     /**< Leaves out what g4lidar_mark_veiling() flags. */
+  const g4lidar_outlier_options* speckle;   /**< Leaves out isolated returns. */
+  const g4lidar_outlier_options* edges;     /**< Leaves out points between two surfaces. */
   const g4lidar_near_options* near_options; /**< Flags G4LIDAR_MAY_BE_TOO_NEAR. */
   const g4lidar_mounting* mount; /**< Of the lidar on the robot, for G4LIDAR_DESKEW_BY_PATH. */
   int32_t deskew;                /**< A g4lidar_deskewing; none. */
@@ -58,7 +59,8 @@ G4LIDAR_C_API int g4lidar_shaper_shape(g4lidar_shaper* shaper, const g4lidar_poi
 G4LIDAR_C_API const g4lidar_point* g4lidar_shaper_kept(g4lidar_shaper* shaper, size_t* count);
 
 /** The same for g4lidar_fill_grid(): a return that is left out stays and is flagged G4LIDAR_TOO_NEAR, so that its
- *  bin becomes NaN and not free; points without return stay. */
+ *  bin becomes NaN and not free; points without return stay. Points that `speckle` and `edges` leave out are
+ *  also flagged G4LIDAR_ISOLATED and G4LIDAR_VEILING. */
 G4LIDAR_C_API const g4lidar_point* g4lidar_shaper_for_grid(g4lidar_shaper* shaper, size_t* count);
 
 /** How many points of the scan, kept or not, have no known motion. They stay where they are, flagged

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Points and scans as short texts, for ostream.hpp and fmt.hpp.
+// Points and scans as short texts, for ostream.hpp.
 #pragma once
 
 #include <algorithm>

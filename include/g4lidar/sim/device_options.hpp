@@ -146,7 +146,6 @@ struct device_options {
   bool start_again_answers = false;  ///< 60 during a scan is answered with another header.
   bool header_after_protection =
       true;  ///< 60 is answered with a header after a stop by the protection.
-  std::int64_t protection_ns = 3'000'000'000;
 
   // What answers contain.
   std::int16_t frequency_error_chz = 0;  ///< What frequencies are too high: 40 of a TG.

@@ -14,6 +14,9 @@
 namespace g4lidar::sim {
 namespace {
 
+// After the last keep-alive of the host.
+constexpr std::int64_t protection_ns = 3'000'000'000;
+
 constexpr std::string_view boot_words = "G4 lidar booting\r\nmotor ok, laser ok, memory ok\r\n";
 
 bytes text_bytes(std::string_view text) noexcept {
@@ -61,7 +64,7 @@ device::machine::event device::machine::next_event() const noexcept {
   consider(output.samples.next_ns(), happening::packet_measured);
   consider(output.samples.end_ns(), happening::scan_end);
   if (is_scanning() && settings.protection == power_down_protection::on) {
-    consider(fed_ns_ + options.protection_ns, happening::protection);
+    consider(fed_ns_ + protection_ns, happening::protection);
   }
   consider(booted_ns_, happening::booted);
   consider(death_ns_, happening::death);

@@ -34,7 +34,7 @@ using member =
                  disturbance options::*, drive options::*, dtr_start options::*, dtr_cut options::*,
                  low_power stored::*, motor_direction stored::*, constant_frequency stored::*,
                  power_down_protection stored::*, health_status health::*>;
-constexpr std::array<std::pair<std::string_view, member>, 56> members{{
+constexpr std::array<std::pair<std::string_view, member>, 55> members{{
     {"baud", &options::baud},
     {"batch_min_ns", &options::batch_min_ns},
     {"batch_max_ns", &options::batch_max_ns},
@@ -85,7 +85,6 @@ constexpr std::array<std::pair<std::string_view, member>, 56> members{{
     {"error_refuses_start", &options::error_refuses_start},
     {"start_again_answers", &options::start_again_answers},
     {"header_after_protection", &options::header_after_protection},
-    {"protection_ns", &options::protection_ns},
     {"initial_idle_power", &stored::idle_power},
     {"initial_direction", &stored::direction},
     {"initial_constancy", &stored::constancy},

@@ -2,10 +2,11 @@
 #include "point_file.hpp"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cstring>
 #include <string_view>
+
+#include <zlib.h>
 
 #include "cloud_point.hpp"
 #include "value_text.hpp"
@@ -92,49 +93,12 @@ class npy_writer : public point_file_writer {
 
 // ---- ZIP ---------------------------------------------------------------------------------------
 
-/// The CRC-32 of ZIP, as its bytes come.
-class crc32 {
- public:
-  void add(std::string_view data) noexcept {
-    for (const char each : data) {
-      const auto byte = static_cast<std::uint8_t>(each);
-      state_ = (state_ >> 8U) ^ effects[(state_ ^ byte) & 0xFFU];
-    }
-  }
-  [[nodiscard]] std::uint32_t value() const noexcept { return ~state_; }
-
- private:
-  static constexpr auto effects = [] {
-    std::array<std::uint32_t, 256> made{};
-    for (std::uint32_t byte = 0; byte < made.size(); ++byte) {
-      std::uint32_t sum = byte;
-      for (int bit = 0; bit < 8; ++bit) sum = (sum >> 1U) ^ ((sum & 1U) != 0 ? 0xEDB88320U : 0U);
-      made[byte] = sum;
-    }
-    return made;
-  }();
-
-  std::uint32_t state_ = 0xFFFFFFFFU;
-};
-
-std::uint32_t crc32_of(std::string_view data) noexcept {
-  crc32 sum;
-  sum.add(data);
-  return sum.value();
-}
-
-/// The sum of two parts, of which the second one has the sum `second` and `size` bytes, at least 4. Zeros have the
-/// effect of any bytes on the sum of what precedes them.
-std::uint32_t joined_sum(std::uint32_t first, std::uint32_t second, std::uint64_t size) {
-  crc32 zeros;
-  zeros.add(little_endian(~first & 0xFFFFFFFFU, 4));
-  const std::string block(65'536, '\0');
-  for (std::uint64_t left = size - 4; left > 0;) {
-    const std::uint64_t part = std::min<std::uint64_t>(left, block.size());
-    zeros.add(std::string_view(block).substr(0, part));
-    left -= part;
-  }
-  return ~zeros.value() ^ second;
+/// The CRC-32 of what had the sum `before`, and then `data`.
+std::uint32_t crc32_of(std::string_view data, std::uint32_t before = 0) noexcept {
+  // Without an address zlib begins anew.
+  if (data.empty()) return before;
+  const auto* const first = reinterpret_cast<const Bytef*>(data.data());
+  return static_cast<std::uint32_t>(::crc32_z(before, first, data.size()));
 }
 
 /// A ZIP file with one stored entry, with 64-bit sizes as NumPy writes them.
@@ -163,7 +127,7 @@ class npz_writer final : public npy_writer {
  private:
   static constexpr std::string_view name = "points.npy";
 
-  void wrote(std::string_view text) override { sum_.add(text); }
+  void wrote(std::string_view text) override { sum_ = crc32_of(text, sum_); }
 
   [[nodiscard]] std::uint64_t points_size() const noexcept { return count() * npy_point_size; }
 
@@ -178,8 +142,8 @@ class npz_writer final : public npy_writer {
   /// length of the name.
   [[nodiscard]] std::string entry() const {
     const std::uint32_t header = crc32_of(npy_writer::first_bytes());
-    const std::uint32_t sum =
-        count() == 0 ? header : joined_sum(header, sum_.value(), points_size());
+    const auto sum = static_cast<std::uint32_t>(
+        ::crc32_combine(header, sum_, static_cast<z_off_t>(points_size())));
     return little_endian(45, 2) + std::string(4, '\0') + little_endian(0, 2) +
            little_endian(0x21, 2) + little_endian(sum, 4) + std::string(8, '\xff') +
            little_endian(name.size(), 2);
@@ -189,7 +153,7 @@ class npz_writer final : public npy_writer {
     return "PK\x03\x04" + entry() + little_endian(20, 2) + std::string(name) + sizes();
   }
 
-  crc32 sum_;
+  std::uint32_t sum_ = 0;  // of the points
 };
 
 // ---- PLY and plain coordinates -------------------------------------------------------------------
