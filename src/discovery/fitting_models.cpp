@@ -33,10 +33,10 @@ bool has_rate(const model& row, std::uint32_t baud) noexcept {
 }
 
 bool is_surely_another(const model& stated, std::uint8_t number, std::uint32_t baud) noexcept {
-  if (has_number(stated, number)) return false;
+  if (number == 0 || stated.has_number(number)) return false;  // 0 is the number of none
   if (stated.link == link_kind::one_way) return one_way_other_than(stated, number) != nullptr;
   return std::ranges::any_of(models, [&](const model& row) {
-    return has_number(row, number) && may_send(row, sample_size(stated.samples.layout), false) &&
+    return row.has_number(number) && may_send(row, sample_size(stated.samples.layout), false) &&
            (baud == 0 || has_rate(row, baud));
   });
 }
@@ -47,7 +47,7 @@ std::vector<const model*> models_that_fit(const lidar_signs& seen) {
     for (const model& row : models) {
       if (seen.answers == presence::yes && row.link != link_kind::two_way) continue;
       if (seen.answers == presence::no && row.link != link_kind::one_way) continue;
-      if (seen.id != 0 && !has_number(row, seen.id)) continue;
+      if (seen.id != 0 && !row.has_number(seen.id)) continue;
       if (!may_send(row, seen.sample_bytes, false)) continue;
       if (by_rate && seen.baud != 0 && !has_rate(row, seen.baud)) continue;
       if (by_ct && seen.ct_id_low_bits != 0 &&

@@ -131,7 +131,7 @@ result<lidar> lidar::open(std::unique_ptr<connector> from, const lidar_options& 
     known.by = known_by::user;
     known.candidates = {};
   } else if (follows) {
-    known.by = has_number(*used.model, known.number) ? known_by::number : known_by::nothing;
+    known.by = used.model->has_number(known.number) ? known_by::number : known_by::nothing;
     known.candidates = {};
   }
   auto made = std::make_unique<driver>(std::move(from), used, known);

@@ -19,7 +19,7 @@ constexpr std::string_view please =
 std::string number_text(std::uint8_t number, const recognition& what) {
   const model& read_as = *what.model;
   std::string text = "The lidar reports the number " + std::to_string(number);
-  const auto with_number = [number](const model& row) { return has_number(row, number); };
+  const auto with_number = [number](const model& row) { return row.has_number(number); };
   const auto* const owner = std::ranges::find_if(models, with_number);
   if (owner == models.end()) {
     text += ", which no known model has.";
@@ -53,8 +53,7 @@ std::string contradictions_of(const recognition& what) {
     if (!all.empty()) all += " ";
     all += sentence;
   };
-  if (what.number != 0 && !has_number(*what.model, what.number))
-    add(number_text(what.number, what));
+  if (what.number != 0 && !what.model->has_number(what.number)) add(number_text(what.number, what));
   const std::string one = std::string(article_of(*what.model)).append(" ").append(what.model->name);
   const bool may_change =
       what.by == known_by::number && !what.has_shown_samples && !what.was_stopped;

@@ -29,6 +29,17 @@ std::string test_name(const testing::TestParamInfo<std::string_view>& of) {
   return name;
 }
 
+/// A device without a number of its own answers 0.
+TEST(OpenNamed, TheNumber0_IsNotThatOfAnotherModel) {
+  for (const model& row : models) EXPECT_FALSE(is_surely_another(row, 0, 0)) << row.word;
+  sim::device_options options = options_of("f4-pro");
+  options.info.model = 0;
+  auto served = sim::background_pty::open(sim::device(sim::built_in_world(), options));
+  ASSERT_TRUE(served);
+  const auto opened = lidar::open(served->path() + "?model=f4-pro");
+  EXPECT_TRUE(opened) << opened.error().message();
+}
+
 /// The models of which devices with two rates are known: 115200 and 128000.
 class OpenAtTheOtherRate : public testing::TestWithParam<std::string_view> {};
 

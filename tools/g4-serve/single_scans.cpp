@@ -22,7 +22,7 @@ void single_scans::open(served_lidar& from, g4lidar::lidar& device) {
 void single_scans::add(served_lidar& from, const g4lidar::scan& found) {
   const client_registry::demand wanted = sender_.wanted();
   // A file that a client makes of them has no model, so it would be read as that of a G4.
-  const bool wants_bytes = wanted.wants(channel::from_device) && found.model->word == g4_model.word;
+  const bool wants_bytes = wanted.wants(channel::from_device) && *found.model == g4_model;
   if (auto bytes = from.take_bytes(wants_bytes); !bytes.empty()) {
     sender_.send_bytes(from.bytes_ns(), std::move(bytes));
   }

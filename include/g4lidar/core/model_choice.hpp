@@ -2,18 +2,12 @@
 // Which models may send the bytes that were received, and which of them is taken where the bytes do not decide.
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 
 #include "g4lidar/core/model.hpp"
 
 namespace g4lidar {
-
-/// Whether devices of the model `row` report this number. *Pure.*
-[[nodiscard]] constexpr bool has_number(const model& row, std::uint8_t number) noexcept {
-  return std::find(row.ids.begin(), row.ids.end(), number) != row.ids.end();
-}
 
 /// Whether a device of the model `row` may send samples of this size, 0: not known. `has_flags`: samples that
 /// consist of flags alone were seen. *Pure.*

@@ -74,7 +74,8 @@ class file_run {
       if (device->recognised) {
         recognition seen_as = *device->recognised;
         seen_as.has_shown_samples = true;  // nothing more is awaited
-        if (std::exchange(seen_as.model, &model_) != &model_) seen_as.by = known_by::user;
+        if (seen_as.model == nullptr || *seen_as.model != model_) seen_as.by = known_by::user;
+        seen_as.model = &model_;
         if (!port_.remark.empty()) port_.remark += " ";
         port_.remark += contradictions_of(seen_as);
       }

@@ -198,13 +198,13 @@ void recording_writer::file_writer::metadata(
 }
 
 result<void> recording_writer::file_writer::take_model(const model& which) {
-  const std::string_view now = channels_.model().word;
-  if (is_closed_ || now == which.word) return {};
+  const model& now = channels_.model();
+  if (is_closed_ || now == which) return {};
   const bool has_begun = transport_.is_known || !chunk_.is_empty() || !file_->is_empty();
   if (options_.model != nullptr || has_begun) {
-    return failure(
-        task::opening, problem::bad_option,
-        "model: " + std::string(which.word) + ", and the recording states " + std::string(now));
+    return failure(task::opening, problem::bad_option,
+                   "model: " + std::string(which.word) + ", and the recording states " +
+                       std::string(now.word));
   }
   channels_.set_model(which);
   return file_->begin(channels_);

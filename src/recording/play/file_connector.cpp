@@ -99,7 +99,7 @@ class file_connector final : public connector, public recording_hook {
 
   [[nodiscard]] const model* begun_as() const noexcept {
     const model& first = of_->items().source().begun_as();
-    return read_as().model->word != first.word ? &first : nullptr;
+    return *read_as().model != first ? &first : nullptr;
   }
 
   std::shared_ptr<played_file> of_;

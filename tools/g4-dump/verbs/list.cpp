@@ -64,7 +64,7 @@ void probe(std::vector<listed_port>& ports, const list_options& options) {
 std::string other_words(const recognised_lidar& lidar) {
   std::string all;
   for (const model* each : lidar.candidates) {
-    if (each == lidar.model) continue;
+    if (*each == *lidar.model) continue;
     all.append(all.empty() ? "" : ",").append(each->word);
   }
   return all.empty() ? "-" : all;

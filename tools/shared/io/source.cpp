@@ -208,7 +208,7 @@ void report_contradictions(const std::string& now) {
 
 void report_contradictions(const g4lidar::lidar& from) {
   const recognition found = from.recognition();
-  const auto has_it = [&](const g4lidar::model& row) { return has_number(row, found.number); };
+  const auto has_it = [&](const g4lidar::model& row) { return row.has_number(found.number); };
   const bool is_guessed = found.by == known_by::samples || found.by == known_by::nothing;
   const bool may_change = is_guessed && found.number != 0 && std::ranges::none_of(models, has_it) &&
                           !found.was_stopped && from.counts().stream.packets <= certain_packets;
@@ -290,7 +290,7 @@ lidar_options options_for(const common_options& options, lidar_options how) {
     const recognition& found = behind.recognised;
     // Of a contradiction they are part, and later.
     const bool is_other =
-        found.number != 0 && found.model != nullptr && !has_number(*found.model, found.number);
+        found.number != 0 && found.model != nullptr && !found.model->has_number(found.number);
     if (!is_other && !is_raw) report_candidates(found.candidates);
     if (is_raw && found.model != nullptr) report_model(*found.model, found.by == known_by::samples);
     return inner ? inner(std::move(from)) : result<std::unique_ptr<connector>>(std::move(from));
