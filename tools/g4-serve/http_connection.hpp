@@ -16,7 +16,6 @@
 #include <limits>
 #include <list>
 #include <memory>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -58,11 +57,16 @@ class http_connection : public std::enable_shared_from_this<http_connection> {
         callbacks_(to) {}
   http_connection(const http_connection&) = delete;
   http_connection& operator=(const http_connection&) = delete;
-  ~http_connection() { all_.erase(place_); }
+  ~http_connection() {
+    if (ended_.empty()) all_.erase(place_);
+  }
 
   [[nodiscard]] clock::time_point last_progress() const noexcept { return since_; }
-  /// Ends it; it stays in the list until its operations have returned.
-  void end() { stream_.close(); }
+  /// Ends it, and removes it from the list.
+  void end() {
+    stream_.close();
+    ended_.splice(ended_.end(), all_, place_);
+  }
 
   void read_request() {
     skips_line_ = true;
@@ -79,7 +83,7 @@ class http_connection : public std::enable_shared_from_this<http_connection> {
 
   void make_progress(std::chrono::seconds timeout) {
     since_ = clock::now();
-    all_.splice(all_.end(), all_, place_);
+    if (ended_.empty()) all_.splice(all_.end(), all_, place_);
     stream_.expires_after(timeout);
   }
 
@@ -88,7 +92,7 @@ class http_connection : public std::enable_shared_from_this<http_connection> {
   }
 
   void read_head() {
-    parser_.emplace();
+    parser_ = std::make_unique<parser>();
     parser_->header_limit(longest_head);
     parser_->body_limit(std::numeric_limits<std::uint64_t>::max());  // no body is read
     http::async_read_header(
@@ -143,17 +147,18 @@ class http_connection : public std::enable_shared_from_this<http_connection> {
         answer.status == 405 ? "allow: GET, HEAD\r\n" : "",
         answer.status == 426 ? "upgrade: websocket\r\nsec-websocket-version: 13\r\n" : "",
         answer.policy);
-    unsent_.emplace(buffers{asio::buffer(head_), is_head ? asio::const_buffer() : content});
+    unsent_ = beast::buffers_suffix<buffers>(
+        buffers{asio::buffer(head_), is_head ? asio::const_buffer() : content});
     write();
   }
 
   void write() {
     make_progress(progress_timeout);
-    stream_.async_write_some(*unsent_,
+    stream_.async_write_some(unsent_,
                              [self = shared_from_this()](error_code why, std::size_t sent) {
                                if (why) return;
-                               self->unsent_->consume(sent);
-                               const bool has_more = asio::buffer_size(*self->unsent_) > 0;
+                               self->unsent_.consume(sent);
+                               const bool has_more = asio::buffer_size(self->unsent_) > 0;
                                has_more ? self->write() : self->finish_answer();
                              });
   }
@@ -163,7 +168,7 @@ class http_connection : public std::enable_shared_from_this<http_connection> {
     if (keeps_open_) return read_request();
     // If the socket were closed at once, with unread bytes, the client could lose the answer.
     error_code ignored;
-    stream_.socket().shutdown(asio::socket_base::shutdown_send, ignored);
+    static_cast<void>(stream_.socket().shutdown(asio::socket_base::shutdown_send, ignored));
     make_progress(linger_timeout);
     linger();
   }
@@ -176,21 +181,23 @@ class http_connection : public std::enable_shared_from_this<http_connection> {
                             });
   }
 
+  using parser = http::request_parser<http::empty_body>;
   using buffers = std::array<asio::const_buffer, 2>;
 
   tcp_stream stream_;
   list& all_;
+  list ended_;  // has it instead of `all_` after end()
   const list::iterator place_;
   const callbacks& callbacks_;
   clock::time_point since_ = clock::now();
   beast::flat_static_buffer<longest_head> received_;
-  std::optional<http::request_parser<http::empty_body>> parser_;
+  std::unique_ptr<parser> parser_ = std::make_unique<parser>();  // of one request
   bool skips_line_ = true;
   bool keeps_open_ = false;
   // The answer, while it is written.
   std::string head_;
   shared_bytes owned_;
-  std::optional<beast::buffers_suffix<buffers>> unsent_;
+  beast::buffers_suffix<buffers> unsent_;
 };
 
 }  // namespace g4_tool

@@ -70,7 +70,12 @@ class web_server::loop {
 
   void run() noexcept {
     // Without memory the operation ends that needed it, and with it its connection.
-    while (!io_.stopped()) tries([this] { io_.run(); });
+    while (!io_.stopped()) {
+      tries([this] {
+        if (!waits_) wait_for_connections();
+        io_.run();
+      });
+    }
   }
 
   void send_news() {
@@ -90,12 +95,17 @@ class web_server::loop {
 
   void wait_for_connections() {
     const auto accept = [this](error_code) {
+      waits_ = false;
       accept_all();
       wait_for_connections();
     };
-    if (may_accept_at() <= clock::now()) return listening_.async_wait(listening_.wait_read, accept);
-    pause_.expires_at(may_accept_at());
-    pause_.async_wait(accept);
+    if (may_accept_at() <= clock::now()) {
+      listening_.async_wait(listening_.wait_read, accept);
+    } else {
+      pause_.expires_at(may_accept_at());
+      pause_.async_wait(accept);
+    }
+    waits_ = true;
   }
 
   void accept_all() {
@@ -146,6 +156,7 @@ class web_server::loop {
   std::size_t sockets_ = 0;
   std::vector<web_socket*> ready_;  // while send_news() uses it
   clock::time_point accepts_at_{};  // in the future if the system had no sockets
+  bool waits_ = false;              // for connections
   std::atomic<bool> has_news_ = false;
   asio::io_context io_{1};  // destroys the connections
   asio::executor_work_guard<executor> works_{io_.get_executor()};
