@@ -3,6 +3,7 @@
 #pragma once
 
 #include <fmt/format.h>
+#include <sys/socket.h>
 
 #include <array>
 #include <boost/beast/core/buffers_suffix.hpp>
@@ -167,8 +168,7 @@ class http_connection : public std::enable_shared_from_this<http_connection> {
     owned_.reset();
     if (keeps_open_) return read_request();
     // If the socket were closed at once, with unread bytes, the client could lose the answer.
-    error_code ignored;
-    static_cast<void>(stream_.socket().shutdown(asio::socket_base::shutdown_send, ignored));
+    ::shutdown(stream_.socket().native_handle(), SHUT_WR);
     make_progress(linger_timeout);
     linger();
   }
