@@ -13,7 +13,7 @@ seconds=${1:-10}
 pages=${2:-50}
 foxglove=${3:-50}
 if [[ -z ${G4_SERVE:-} ]]; then
-  need_packages "${packages_bench[@]}" libwebsockets-dev
+  need_packages "${packages_bench[@]}" libboost-dev
   configure_preset release
   build build/release g4-serve
   G4_SERVE=build/release/g4-serve

@@ -27,7 +27,9 @@ def connect(port, protocol):
 
 def send(sock, text):
     data = text.encode()
-    sock.sendall(bytes([0x81, 0xFE]) + len(data).to_bytes(2, 'big') + bytes(4) + data)
+    # RFC 6455, 5.2: the length takes as few bytes as possible.
+    size = bytes([0x80 | len(data)]) if len(data) < 126 else b'\xFE' + len(data).to_bytes(2, 'big')
+    sock.sendall(b'\x81' + size + bytes(4) + data)
 
 
 class Client:

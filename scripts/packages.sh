@@ -11,7 +11,7 @@ packages_demo=(
 )
 
 # To build all programs.
-packages_programs=("${packages_demo[@]}" libwebsockets-dev cyclonedds-dev cyclonedds-tools)
+packages_programs=("${packages_demo[@]}" libboost-dev cyclonedds-dev cyclonedds-tools)
 
 # To build the tests.
 packages_test=(

@@ -55,7 +55,7 @@ def test_the_model_of_bytes_and_recordings(tmp_path: Path) -> None:
         assert (found["intensity"] == points["intensity"]).all()
         assert (found["range_mm"] == points["range_mm"]).all()
         assert g4lidar.Recording(tmp_path / "again.mcap").model == "t-mini-pro"
-    with pytest.raises(errors.BadOption, match="x4, and the source states t-mini-pro"):
+    with pytest.raises(errors.OtherDevice, match="x4, and the source states t-mini-pro"):
         g4lidar.open(walk, model="x4")
     unknown: list[Callable[[], object]] = [
         lambda: g4lidar.open(raw, model="x44"), lambda: g4lidar.decode(data, model="x44"),

@@ -16,6 +16,7 @@ namespace {
 using serve::page;
 using serve::raw_client;
 using serve::Server;
+using ::testing::StartsWith;
 
 class Crowd : public Server {
  protected:
@@ -48,6 +49,28 @@ TEST_F(Crowd, TwoHundredThatStay_TheFirst128AreServed) {
   EXPECT_TRUE(gets_scans(*all.front(), 3));
   EXPECT_TRUE(gets_scans(*all[places - 1], 3));
   EXPECT_EQ(loud->next_frame().value_or("closed"), refusal);
+  EXPECT_EQ(end().code, 128 + SIGTERM);
+}
+
+TEST_F(Crowd, FiveHundred_AllAreAnswered) {
+  begin();
+  const auto first = open_page();
+  std::vector<raw_client> all;
+  for (int i = 0; i < 500; ++i) {
+    all.emplace_back(port_);
+    all.back().send(raw_client::upgrade_request(page));
+  }
+  int opened = 0;
+  for (raw_client& each : all) {
+    const std::string head = each.read_until("\r\n\r\n");
+    if (head.starts_with("HTTP/1.1 101")) {
+      ++opened;
+    } else {
+      EXPECT_THAT(head, StartsWith("HTTP/1.1 503"));
+    }
+  }
+  EXPECT_GE(opened, static_cast<int>(places) - 1);
+  EXPECT_TRUE(gets_scans(*first));
   EXPECT_EQ(end().code, 128 + SIGTERM);
 }
 

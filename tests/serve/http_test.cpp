@@ -9,15 +9,11 @@
 #include <string_view>
 #include <vector>
 
-#include "http_request.hpp"
 #include "server.hpp"
 #include "support/test_scale.hpp"
 
 namespace {
 
-using g4_tool::has_element;
-using g4_tool::head_size;
-using g4_tool::parse_head;
 using serve::page;
 using serve::raw_client;
 using serve::Server;
@@ -26,54 +22,6 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 using ::testing::StartsWith;
 
-TEST(HttpRequest, HasWhatAServerNeeds) {
-  const std::string head =
-      "GET /page.css?1 HTTP/1.1\r\nhOST:  robot:8765 \r\nOrigin: http://robot:8765\r\n"
-      "Upgrade: h2c, WebSocket\r\nConnection: keep-alive, Upgrade\r\nSec-WebSocket-Version: 13\r\n"
-      "X-Empty:\r\n\r\n";
-  EXPECT_EQ(head_size(head), head.size());
-  EXPECT_EQ(head_size(head + "more"), head.size());
-  EXPECT_EQ(head_size(head.substr(0, head.size() - 1)), 0U);
-  const auto request = parse_head(head);
-  ASSERT_TRUE(request);
-  EXPECT_EQ(request->method, "GET");
-  EXPECT_EQ(request->path, "/page.css");
-  EXPECT_EQ(request->host, "robot:8765");
-  EXPECT_EQ(request->origin, "http://robot:8765");
-  EXPECT_EQ(request->socket_version, "13");
-  EXPECT_TRUE(request->wants_socket());
-  EXPECT_TRUE(request->keeps_open());
-}
-
-TEST(HttpRequest, WhatKeepsAConnectionOpen) {
-  const auto keeps_open = [](const std::string& version, const std::string& more) {
-    const std::string head = "GET / HTTP/" + version + "\r\nHost: a\r\n" + more + "\r\n";
-    const auto request = parse_head(head);
-    return request.has_value() && request->keeps_open();
-  };
-  EXPECT_TRUE(keeps_open("1.1", ""));
-  EXPECT_TRUE(keeps_open("1.1", "Content-Length: 0\r\n"));
-  EXPECT_FALSE(keeps_open("1.0", ""));
-  EXPECT_FALSE(keeps_open("1.1", "Connection: Close\r\n"));
-  EXPECT_FALSE(keeps_open("1.1", "Content-Length: 1\r\n"));
-  EXPECT_FALSE(keeps_open("1.1", "Transfer-Encoding: chunked\r\n"));
-}
-
-TEST(HttpRequest, OnlyWebSocketsAreAnUpgrade) {
-  const auto wants = [](const std::string& more) {
-    const std::string head = "GET / HTTP/1.1\r\nHost: a\r\n" + more + "\r\n";
-    const auto request = parse_head(head);
-    return request.has_value() && request->wants_socket();
-  };
-  EXPECT_TRUE(wants("Upgrade: websocket\r\nConnection: Upgrade\r\n"));
-  EXPECT_FALSE(wants("Upgrade: websocket\r\n"));
-  EXPECT_FALSE(wants("Upgrade: websockets\r\nConnection: Upgrade\r\n"));
-  EXPECT_FALSE(wants("Upgrade: h2c\r\nConnection: Upgrade, HTTP2-Settings\r\n"));
-  EXPECT_TRUE(has_element("a, b ,c", "B"));
-  EXPECT_FALSE(has_element("ab", "b"));
-  EXPECT_FALSE(has_element("", "b"));
-}
-
 const std::vector<std::string> malformed{
     "PRI * HTTP/2.0\r\n\r\n",
     "GET / HTTP/2.0\r\nHost: localhost\r\n\r\n",
@@ -81,20 +29,18 @@ const std::vector<std::string> malformed{
     "GET /\r\nHost: localhost\r\n\r\n",
     "GET  / HTTP/1.1\r\nHost: localhost\r\n\r\n",
     "GET / x HTTP/1.1\r\nHost: localhost\r\n\r\n",
-    "GET http://localhost/ HTTP/1.1\r\nHost: localhost\r\n\r\n",
+    "GET https://localhost/ HTTP/1.1\r\nHost: localhost\r\n\r\n",
+    "OPTIONS * HTTP/1.1\r\nHost: localhost\r\n\r\n",
     "GET /\x01 HTTP/1.1\r\nHost: localhost\r\n\r\n",
     "G@T / HTTP/1.1\r\nHost: localhost\r\n\r\n",
     " / HTTP/1.1\r\nHost: localhost\r\n\r\n",
     "GET / HTTP/1.1\r\nHost: localhost\r\nHost: localhost\r\n\r\n",
     "GET / HTTP/1.1\r\nHost: localhost\r\nnothing\r\n\r\n",
     "GET / HTTP/1.1\r\nHost: localhost\r\nHost : localhost\r\n\r\n",
-    "GET / HTTP/1.1\r\nHost: localhost\r\n folded: x\r\n\r\n",
+    "GET / HTTP/1.1\r\nHost: localhost\r\nOrigin: http://localhost\r\nOrigin: null\r\n\r\n",
+    "GET / HTTP/1.1\r\n folded: x\r\nHost: localhost\r\n\r\n",
     "GET / HTTP/1.1\r\nHost: local\nhost\r\n\r\n",
-    "\r\n\r\n"};
-
-TEST(HttpRequest, MalformedOnes_AreNone) {
-  for (const std::string& head : malformed) EXPECT_FALSE(parse_head(head)) << head;
-}
+    "\r\n\r\n\r\n"};
 
 class Http : public Server {
  protected:
@@ -104,6 +50,82 @@ class Http : public Server {
     return client.read_to_end().value_or("no end");
   }
 };
+
+// RFC 9112, 3.2.2: its host counts, and not that of the header.
+TEST_F(Http, AbsoluteForm_IsAPath) {
+  begin();
+  const auto ask = [&](const std::string& target, const std::string& host = "localhost") {
+    return answer_to("GET " + target + " HTTP/1.1\r\nHost: " + host +
+                     "\r\nConnection: close\r\n\r\n");
+  };
+  EXPECT_THAT(ask("http://localhost/"), HasSubstr("<title>"));
+  EXPECT_THAT(ask("HTTP://localhost:8765/status.json?a=/b"), HasSubstr("{\"op\":\"status\""));
+  EXPECT_THAT(ask("http://localhost"), HasSubstr("<title>"));
+  EXPECT_THAT(ask("http://localhost?x"), HasSubstr("<title>"));
+  EXPECT_THAT(ask("http://localhost/nothing"), StartsWith("HTTP/1.1 404"));
+  EXPECT_THAT(ask("http://localhost/", "evil.example"), StartsWith("HTTP/1.1 200"));
+  EXPECT_THAT(ask("http://evil.example/"), StartsWith("HTTP/1.1 403"));
+  EXPECT_THAT(ask("http:///"), StartsWith("HTTP/1.1 403"));
+  EXPECT_THAT(ask("http://localhost@evil.example/"), StartsWith("HTTP/1.1 403"));
+}
+
+// RFC 9112, 2.2.
+TEST_F(Http, EmptyLineBeforeARequest_IsSkipped) {
+  begin();
+  raw_client client(port_);
+  for (int i = 0; i < 2; ++i) {
+    client.send("\r\nGET /status.json HTTP/1.1\r\nHost: localhost\r\n\r\n");
+    EXPECT_THAT(client.read_until("}\n"), StartsWith("HTTP/1.1 200")) << i;
+  }
+  client.send("\r\n");
+  EXPECT_THAT(client.get("/"), StartsWith("HTTP/1.1 200"));
+}
+
+TEST_F(Http, WhatKeepsAConnectionOpen) {
+  begin();
+  const auto keeps_open = [&](const std::string& version, const std::string& more) {
+    raw_client client(port_);
+    client.send("GET / HTTP/" + version + "\r\nHost: localhost\r\n" + more + "\r\n");
+    const std::string head = client.read_until("\r\n\r\n");
+    EXPECT_THAT(head, StartsWith("HTTP/1.1 200")) << version << more;
+    EXPECT_THAT(head, ContainsRegex("connection: (keep-alive|close)\r\n"));
+    return head.find("connection: keep-alive") != std::string::npos;
+  };
+  EXPECT_TRUE(keeps_open("1.1", ""));
+  EXPECT_TRUE(keeps_open("1.1", "Content-Length: 0\r\n"));
+  EXPECT_FALSE(keeps_open("1.0", ""));
+  EXPECT_FALSE(keeps_open("1.0", "Connection: keep-alive\r\n"));
+  EXPECT_FALSE(keeps_open("1.1", "Connection: Close\r\n"));
+  EXPECT_FALSE(keeps_open("1.1", "Connection: x\r\nConnection: close\r\n"));
+  EXPECT_FALSE(keeps_open("1.1", "Content-Length: 1\r\n"));
+  EXPECT_FALSE(keeps_open("1.1", "Transfer-Encoding: chunked\r\n"));
+}
+
+TEST_F(Http, OnlyWebSocketsAreAnUpgrade) {
+  begin();
+  const auto wants = [&](const std::string& more) {
+    const std::string answer =
+        answer_to("GET / HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n" + more + "\r\n");
+    EXPECT_THAT(answer, ContainsRegex("^HTTP/1.1 (200|426)")) << more;
+    return answer.starts_with("HTTP/1.1 426");
+  };
+  EXPECT_TRUE(wants("Upgrade: websocket\r\nConnection: Upgrade\r\n"));
+  EXPECT_TRUE(wants("Upgrade: h2c, WebSocket\r\nConnection: keep-alive, Upgrade\r\n"));
+  EXPECT_FALSE(wants("Upgrade: websocket\r\n"));
+  EXPECT_FALSE(wants("Upgrade: websockets\r\nConnection: Upgrade\r\n"));
+  EXPECT_FALSE(wants("Upgrade: h2c\r\nConnection: Upgrade, HTTP2-Settings\r\n"));
+}
+
+TEST_F(Http, SlowHeads_AreEnded) {
+  begin();
+  raw_client slow(port_);
+  slow.send("GET / HTTP/1.1\r\nHost: localhost\r\nX: ");
+  EXPECT_TRUE(g4lidar::test::comes_true([&] {
+    slow.send("x");
+    return slow.has_ended();
+  }));
+  EXPECT_THAT(raw_client(port_).get("/"), StartsWith("HTTP/1.1 200"));
+}
 
 const std::string h2c =
     "GET /status.json HTTP/1.1\r\nHost: localhost\r\nConnection: Upgrade, HTTP2-Settings\r\n"
@@ -213,7 +235,33 @@ TEST_F(Http, Handshakes_LearnWhatIsWrong) {
   EXPECT_THAT(with("HTTP/1.1", "HTTP/1.0"), StartsWith("HTTP/1.1 400"));
   EXPECT_THAT(with("GET", "HEAD"), StartsWith("HTTP/1.1 400"));
   EXPECT_THAT(with(page, "chat"), StartsWith("HTTP/1.1 400"));
+  EXPECT_THAT(with("GET /", "GET /status.json"), StartsWith("HTTP/1.1 404"));
+  EXPECT_THAT(with("GET /", "GET /?x"), StartsWith("HTTP/1.1 101"));
+  EXPECT_THAT(with("GET /", "GET http://localhost/"), StartsWith("HTTP/1.1 101"));
   EXPECT_THAT(with("websocket", "h2c, WebSocket"), StartsWith("HTTP/1.1 101"));
+  const std::string key = "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n";
+  EXPECT_THAT(with(key, key + key), StartsWith("HTTP/1.1 400"));
+  EXPECT_THAT(with(key, ""), StartsWith("HTTP/1.1 400"));
+}
+
+// RFC 9110, 5.3.
+TEST_F(Http, ListsInTwoLines_AreOneList) {
+  begin();
+  const std::string good = raw_client::upgrade_request(page);
+  for (const std::string line : {"Upgrade: websocket", "Connection: Upgrade",
+                                 "Sec-WebSocket-Version: 13", "Sec-WebSocket-Protocol: "}) {
+    const std::string name = line.substr(0, line.find(' '));
+    for (const bool is_first : {true, false}) {
+      std::string changed = good;
+      const std::size_t at = good.find(line);
+      ASSERT_NE(at, std::string::npos) << line;
+      changed.insert(is_first ? at : good.find("\r\n", at) + 2, name + " other\r\n");
+      raw_client client(port_);
+      client.send(changed);
+      EXPECT_THAT(client.read_until("\r\n\r\n"), StartsWith("HTTP/1.1 101")) << changed;
+      EXPECT_TRUE(gets_scans(client, 1)) << changed;
+    }
+  }
 }
 
 TEST_F(Http, FramesRightBehindTheHandshake_AreRead) {

@@ -47,6 +47,18 @@ TEST_F(Listening, UnfinishedRequests_KeepOutNobody) {
   }
 }
 
+TEST_F(Listening, UnfinishedRequests_AreBounded) {
+  begin();
+  std::vector<raw_client> held;
+  while (held.size() < 200) {
+    held.emplace_back(port_);
+    held.back().send("GET / HTTP/1.1\r\nHost: localhost\r\n");
+  }
+  EXPECT_THAT(raw_client(port_).get("/status.json"), StartsWith("HTTP/1.1 200"));
+  const auto ended = std::ranges::count_if(held, [](raw_client& each) { return each.has_ended(); });
+  EXPECT_GE(ended, 200 - 60) << "the server accepts them in their order";
+}
+
 TEST_F(Listening, Head_HasTheHeadersOnly) {
   begin();
   const std::string head = ask("HEAD");

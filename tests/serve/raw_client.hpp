@@ -64,6 +64,12 @@ class raw_client {
     if (!is_closed_) return std::nullopt;
     return std::exchange(got_, {});
   }
+  /// Whether the server has closed it. Does not wait.
+  [[nodiscard]] bool has_ended() {
+    pollfd ready{fd_, POLLIN, 0};
+    while (!is_closed_ && ::poll(&ready, 1, 0) > 0) read_some();
+    return is_closed_;
+  }
   [[nodiscard]] std::string get(std::string_view path, std::string_view more = {}) {
     send("GET " + std::string(path) + " HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n" +
          std::string(more) + "\r\n");
@@ -89,8 +95,10 @@ class raw_client {
                            std::optional<std::uint64_t> length = {}) {
     const std::uint64_t size = length.value_or(payload.size());
     std::string made(1, static_cast<char>(0x80U | opcode));
-    made += '\xFF';
-    for (int i = 7; i >= 0; --i) made += static_cast<char>(size >> (8 * i));
+    // RFC 6455, 5.2: the length takes as few bytes as possible.
+    const int wide = size < 126 ? 0 : size < 65'536 ? 2 : 8;
+    made += static_cast<char>(0x80U | (wide == 0 ? size : wide == 2 ? 126U : 127U));
+    for (int i = wide - 1; i >= 0; --i) made += static_cast<char>(size >> (8 * i));
     return made + std::string(4, '\0') + std::string(payload);
   }
   void send_text(std::string_view text) const { send(frame(1, text)); }

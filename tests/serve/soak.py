@@ -46,7 +46,9 @@ class Client:
         self.buffer += part
 
     def send(self, opcode, data):
-        self.sock.sendall(bytes([0x80 | opcode, 0xFE]) + len(data).to_bytes(2, 'big') + bytes(4) + data)
+        # RFC 6455, 5.2: the length takes as few bytes as possible.
+        size = bytes([0x80 | len(data)]) if len(data) < 126 else b'\xFE' + len(data).to_bytes(2, 'big')
+        self.sock.sendall(bytes([0x80 | opcode]) + size + bytes(4) + data)
 
     def frame(self):
         """The opcode and the payload of the next message."""
