@@ -1,16 +1,16 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
 # The number of points per second that g4-dump converts to csv on one core: from raw bytes and from
-# a recording, with scans in it and without. Fails below the promised 20 million. The rate with the
+# a recording, with scans in it and without. Fails below the promised 10 million. The rate with the
 # csv in a file is only printed, because it includes the time of the file system.
-#   bench/convert.sh [MINUTES [LEAST]]: of a simulated lidar, 10 by default; fails below LEAST million, 20.
+#   bench/convert.sh [MINUTES [LEAST]]: of a simulated lidar, 10 by default; fails below LEAST million, 10.
 # Processor time without that of the disk, the median of five runs.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 source scripts/packages.sh
 source scripts/build.sh
 minutes=${1:-10}
-promised=${2:-20}
+promised=${2:-10}
 need_packages "${packages_demo[@]}"
 configure_preset release
 build build/release g4-dump

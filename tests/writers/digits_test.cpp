@@ -24,7 +24,7 @@ using namespace digits;
 
 template <class Put>
 std::string text_by(const Put& put) {
-  std::array<char, 64 + slack> room{};
+  std::array<char, 64> room{};
   return {room.data(), static_cast<std::size_t>(put(room.data()) - room.data())};
 }
 
@@ -60,17 +60,10 @@ TEST(Digits, Integers_AgreeWithPrintf) {
   }
 }
 
-TEST(Digits, GrowingNumbers_AgreeWithPrintfForwardsAndBack) {
-  growing_number column;
-  const auto check = [&column](std::uint64_t number) {
-    const std::string text = text_by([&](char* at) { return column.put(at, number); });
-    ASSERT_EQ(text, std::to_string(number));
-  };
-  for (std::uint64_t number = 0; number < 3'000'000'000; number += 1'111'111) check(number);
-  for (const std::uint64_t number :
-       {std::uint64_t{99'999'999}, std::uint64_t{100'000'000}, std::uint64_t{5},
-        std::uint64_t{9'223'372'036'854'775'807}, std::uint64_t{100'000'001}, std::uint64_t{0}}) {
-    check(number);
+TEST(Digits, NegativeIntegers_AgreeWithPrintf) {
+  for (const std::int64_t number :
+       {std::int64_t{-1}, std::int64_t{-99'999'999}, std::numeric_limits<std::int64_t>::min()}) {
+    EXPECT_EQ(text_by([&](char* at) { return put_number(at, number); }), std::to_string(number));
   }
 }
 

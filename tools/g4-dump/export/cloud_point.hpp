@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
-// A point as the point clouds contain it.
+// A point as the point clouds contain it, and numbers as their bytes.
 #pragma once
 
+#include <algorithm>
+#include <array>
+#include <bit>
 #include <cstdint>
 
 #include "g4lidar/core/angle.hpp"
@@ -17,6 +20,14 @@ struct cloud_point {
   float range_m;
   float angle_deg;  ///< Vendor in [0, 360), robot in [-180, 180).
 };
+
+/// Writes the bytes of a number, the lowest first.
+template <class Number>
+char* put_little_endian(char* at, Number number) noexcept {
+  auto raw = std::bit_cast<std::array<char, sizeof number>>(number);
+  if constexpr (std::endian::native == std::endian::big) std::reverse(raw.begin(), raw.end());
+  return std::copy(raw.begin(), raw.end(), at);
+}
 
 [[nodiscard]] inline cloud_point in_cloud(const point& p, frame to,
                                           std::uint16_t turn_deg) noexcept {

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Comma-separated values. The columns are stable: more may follow, and none changes its position.
+#include <algorithm>
 #include <array>
 #include <cstring>
+#include <memory>
+#include <string>
 
 #include "value_text.hpp"
 
@@ -31,30 +34,26 @@ class csv_points final : public point_writer {
     while (!points.empty()) {
       const auto piece = points.first(std::min(points.size(), most_rows));
       points = points.subspan(piece.size());
-      char* at = out.room(piece.size() * max_row + digits::slack);
+      char* at = out.room(piece.size() * max_row);
       for (const point& p : piece) at = put_row(at, p);
       out.wrote(at);
     }
   }
 
  private:
-  // 10 digits of the scan, 11 characters of the angle, 11 of the range, 20 of the time, 5 of the
-  // intensity, 1 of the flags.
-  static constexpr std::size_t max_row = 72;
+  // 10 digits of the scan, 11 characters of the angle, 21 of the range, 20 of the time, 5 of the
+  // intensity, 3 of the flags, and 6 between and behind them.
+  static constexpr std::size_t max_row = 76;
   static constexpr std::size_t most_rows = 512;
 
   char* put_row(char* at, const point& p) noexcept {
     if (p.revolution != scan_) keep_scan(p.revolution);
-    std::memcpy(at, scan_text_.data(), 16);
+    std::memcpy(at, scan_text_.data(), scan_text_.size());
     at = put_angle_column<Frame>(at + scan_length_, p, turn_deg_);
     *at++ = ',';
     at = put_range_column<Unit>(at, p);
     *at++ = ',';
-    const bool is_negative = p.time_ns < 0;
-    *at = '-';
-    at += is_negative ? 1 : 0;
-    const auto number = static_cast<std::uint64_t>(p.time_ns);
-    at = time_.put(at, is_negative ? std::uint64_t{0} - number : number);
+    at = digits::put_number(at, p.time_ns);
     if (has_intensity_) {
       *at++ = ',';
       at = digits::put_number(at, p.intensity);
@@ -79,8 +78,7 @@ class csv_points final : public point_writer {
   std::uint16_t turn_deg_;
   std::uint32_t scan_ = 0;
   std::ptrdiff_t scan_length_ = 2;
-  std::array<char, 32> scan_text_{'0', ','};
-  digits::growing_number time_;
+  std::array<char, 16> scan_text_{'0', ','};  // most points have the scan of those before
 };
 
 template <frame Frame>

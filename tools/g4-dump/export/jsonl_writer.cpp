@@ -42,7 +42,7 @@ class jsonl_points final : public point_writer {
     at = digits::put_number(put_text(at, "{\"scan\":"), p.revolution);
     at = put_angle_column(put_text(at, ",\"angle_deg\":"), p, style_.to, turn_deg);
     at = put_range_column(put_text(at, range_name_), p, style_.unit);
-    at = digits::put_signed(put_text(at, ",\"time_ns\":"), p.time_ns);
+    at = digits::put_number(put_text(at, ",\"time_ns\":"), p.time_ns);
     if (style_.intensity) at = digits::put_number(put_text(at, ",\"intensity\":"), p.intensity);
     if (style_.sample_flags) {
       at = digits::put_number(put_text(at, ",\"sample_flags\":"), p.sample_flags);
@@ -85,7 +85,7 @@ class jsonl_scans final : public point_writer {
     write_column(scan, style_.unit == length_unit::metres ? "range_m" : "range_mm", out,
                  [this](char* at, const point& p) { return put_range_column(at, p, style_.unit); });
     write_column(scan, "time_ns", out,
-                 [](char* at, const point& p) { return digits::put_signed(at, p.time_ns); });
+                 [](char* at, const point& p) { return digits::put_number(at, p.time_ns); });
     if (style_.intensity) {
       write_column(scan, "intensity", out,
                    [](char* at, const point& p) { return digits::put_number(at, p.intensity); });

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "pcd.hpp"
 
-#include <bit>
 #include <string>
 
 #include "cloud_point.hpp"
@@ -12,18 +11,12 @@ namespace {
 
 void write_binary(const point& p, frame to, const model& which, text_sink& out) {
   const cloud_point shown = in_cloud(p, to, which.turn_deg);
-  char* at = out.room(28 + sizeof(std::uint64_t));
+  char* at = out.room(32);
   for (const float field : {shown.x_m, shown.y_m, 0.0F, shown.range_m, shown.angle_deg}) {
-    digits::put_word(at,
-                     std::bit_cast<std::uint32_t>(field));  // the next field overwrites half of it
-    at += sizeof field;
+    at = put_little_endian(at, field);
   }
-  digits::put_word(at, static_cast<std::uint64_t>(p.time_ns));
-  at += sizeof p.time_ns;
-  if (has_intensity(which)) {
-    digits::put_word(at, std::bit_cast<std::uint32_t>(static_cast<float>(p.intensity)));
-    at += sizeof(float);
-  }
+  at = put_little_endian(at, p.time_ns);
+  if (has_intensity(which)) at = put_little_endian(at, static_cast<float>(p.intensity));
   out.wrote(at);
 }
 

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "point_file.hpp"
 
-#include <algorithm>
-#include <bit>
-#include <cstring>
-#include <string_view>
-
 #include <zlib.h>
+
+#include <algorithm>
+#include <string_view>
 
 #include "cloud_point.hpp"
 #include "value_text.hpp"
@@ -48,13 +46,14 @@ std::string npy_header(std::uint64_t count) {
   return padded(begin + fields, size - 1) + '\n';
 }
 
-void put_npy_point(char* at, const point& p) noexcept {
-  digits::put_word(at, std::bit_cast<std::uint32_t>(p.angle_deg) |
-                           std::uint64_t{std::bit_cast<std::uint32_t>(p.range_mm)} << 32U);
-  digits::put_word(at + 8, static_cast<std::uint64_t>(p.time_ns));
-  digits::put_word(at + 16,
-                   p.revolution | std::uint64_t{static_cast<std::uint8_t>(p.flags)} << 32U |
-                       std::uint64_t{p.sample_flags} << 40U | std::uint64_t{p.intensity} << 48U);
+char* put_npy_point(char* at, const point& p) noexcept {
+  at = put_little_endian(at, p.angle_deg);
+  at = put_little_endian(at, p.range_mm);
+  at = put_little_endian(at, p.time_ns);
+  at = put_little_endian(at, p.revolution);
+  at = put_little_endian(at, p.flags);
+  at = put_little_endian(at, p.sample_flags);
+  return put_little_endian(at, p.intensity);
 }
 
 class npy_writer : public point_file_writer {
@@ -67,10 +66,7 @@ class npy_writer : public point_file_writer {
       const std::size_t size = some.size() * npy_point_size;
       char* const room = out.room(size);
       char* at = room;
-      for (const point& p : some) {
-        put_npy_point(at, p);
-        at += npy_point_size;
-      }
+      for (const point& p : some) at = put_npy_point(at, p);
       wrote({room, size});
       out.wrote(at);
       count_ += some.size();
@@ -170,20 +166,13 @@ class ply_writer final : public point_file_writer {
     for (const point& p : points) {
       if (p.is_no_return()) continue;
       const cloud_point v = in_cloud(p, to_, turn_deg_);
-      char* at = out.room(vertex_size + digits::slack);
+      char* at = out.room(vertex_size);
       for (const float field : {v.x_m, v.y_m, 0.0F, v.range_m, v.angle_deg}) {
-        digits::put_word(
-            at, std::bit_cast<std::uint32_t>(field));  // the next field overwrites half of it
-        at += sizeof field;
+        at = put_little_endian(at, field);
       }
-      digits::put_word(at, std::bit_cast<std::uint64_t>(static_cast<double>(p.time_ns) * 1e-9));
-      at += sizeof(double);
-      digits::put_word(at, p.revolution);
-      at += sizeof p.revolution;
-      if (has_intensity_) {
-        digits::put_word(at, std::bit_cast<std::uint32_t>(static_cast<float>(p.intensity)));
-        at += sizeof(float);
-      }
+      at = put_little_endian(at, static_cast<double>(p.time_ns) * 1e-9);
+      at = put_little_endian(at, p.revolution);
+      if (has_intensity_) at = put_little_endian(at, static_cast<float>(p.intensity));
       out.wrote(at);
       ++count_;
     }

@@ -244,7 +244,7 @@ void protocol_log::write_line(char mark, std::string_view words, bytes data, std
   std::string line;
   if (style_.has_times) {
     times_.arrived(time_ns);
-    std::array<char, 20 + digits::slack> seconds;
+    std::array<char, 20> seconds;
     line.append(seconds.data(), put_seconds(seconds.data(), times_.of(time_ns)));
   } else {
     line = in_column(8, std::to_string(place));

@@ -39,7 +39,7 @@ class point_columns final : public point_writer {
 
   char* put_line(char* at, const point& p) const noexcept {
     const auto right = [&at](unsigned width, auto put) {
-      std::array<char, 48 + digits::slack> text;
+      std::array<char, 48> text;
       const auto size = static_cast<std::size_t>(put(text.data()) - text.data());
       for (std::size_t i = size; i < width; ++i) *at++ = ' ';
       at = digits::put_text(at, {text.data(), size});

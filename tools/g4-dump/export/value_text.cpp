@@ -26,11 +26,7 @@ char* put_seconds(char* at, std::int64_t time_ns) noexcept {
   const auto number = static_cast<std::uint64_t>(time_ns);
   const std::uint64_t magnitude = is_negative ? std::uint64_t{0} - number : number;
   if (is_negative) *at++ = '-';
-  at = digits::put_number(at, magnitude / 1'000'000'000U);
-  *at++ = '.';
-  const auto decimals = static_cast<std::uint32_t>(magnitude % 1'000'000'000U / 1'000U);
-  digits::put_word(at, digits::eight_digits(decimals) >> 16U);
-  return at + 6;
+  return digits::put_scaled<6>(at, magnitude / 1'000U);
 }
 
 std::string with_decimals(double number, int decimals) {

@@ -17,7 +17,7 @@
 
 namespace g4_tool {
 
-/// The angle in `Frame` with this number of decimals, at most 11 characters and digits::slack.
+/// The angle in `Frame` with this number of decimals, at most 11 characters.
 template <frame Frame, unsigned Decimals = 6>
 char* put_angle_column(char* at, const point& p, std::uint16_t turn_deg) noexcept {
   if constexpr (Frame == frame::robot) {
@@ -48,7 +48,7 @@ inline char* put_range_column(char* at, const point& p, length_unit unit) noexce
   return unit == length_unit::metres ? "m" : "mm";
 }
 
-/// Seconds with six decimals, truncated; at most 20 characters and digits::slack.
+/// Seconds with six decimals, truncated; at most 20 characters.
 char* put_seconds(char* at, std::int64_t time_ns) noexcept;
 
 /// Any finite number, rounded as printf does.
