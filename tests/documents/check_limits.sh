@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# The README has at most 150 lines, a page for users at most 300, and a sentence of them at most 25 words. No link of a
+# The README has at most 150 lines, a page at most 300, and a sentence of them at most 25 words. No link of a
 # document leads nowhere. Each promise of docs/promises.md names its test. Each command of the README's table "I want
 # to ..." works, as it stands and with a lidar.
 #
@@ -24,6 +24,9 @@ refuse() {
 # ---- lines, sentences, links, promises -----------------------------------------------------------
 
 shopt -s nullglob
+for page in docs/design/*.md; do
+  if (($(wc -l <"$page") > 300)); then refuse "$page has more than 300 lines"; fi
+done
 for page in README.md SUPPORT.md CONTRIBUTING.md docs/*.md docs/guide/*.md docs/lidars/*.md examples/*/README.md; do
   most=300
   if [[ $page == README.md ]]; then most=150; fi
