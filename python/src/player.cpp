@@ -37,6 +37,10 @@ void seek(const lidar_player& on, double seconds) {
   on.call([position_ns](player& of) { return of.seek(position_ns); });
 }
 
+bool is_paused(const lidar_player& on) {
+  return on.call([](player& of) { return result<bool>(of.is_paused()); });
+}
+
 }  // namespace
 
 void bind_player(nb::module_& module, nb::class_<live_lidar>& of) {
@@ -48,10 +52,7 @@ void bind_player(nb::module_& module, nb::class_<live_lidar>& of) {
           "pause", &pause, "pauses"_a = true,
           "While it is paused nothing is read: next_scan() waits until its timeout, a loop without "
           "limit.")
-      .def_prop_ro("is_paused",
-                   [](const lidar_player& on) {
-                     return on.call([](player& of) { return result<bool>(of.is_paused()); });
-                   })
+      .def_prop_ro("is_paused", &is_paused)
       .def_prop_rw(
           "speed",
           [](const lidar_player& on) {

@@ -117,7 +117,7 @@ TEST_F(CModel, RecordingsStateIt) {
   EXPECT_STREQ(g4lidar_reader_info(found)->model, "t-mini-pro");
   g4lidar_reader_free(found);
   EXPECT_EQ(intensity_of(recorded_, nullptr), 101);
-  EXPECT_EQ(intensity_of(recorded_, "x4"), -1 - G4LIDAR_BAD_OPTION);
+  EXPECT_EQ(intensity_of(recorded_, "x4"), -1 - G4LIDAR_OTHER_DEVICE);
   EXPECT_NE(std::string(why_.message).find("t-mini-pro"), std::string::npos) << why_.message;
 }
 

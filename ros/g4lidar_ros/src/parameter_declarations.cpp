@@ -113,6 +113,23 @@ value value_or(const g4lidar::parameter_value& from, const value& otherwise) {
       from);
 }
 
+/// The settings of the lidar, within the limits of its model, and what it has.
+void declare_settings(rclcpp_lifecycle::LifecycleNode& node) {
+  std::string word = node.get_parameter("model").as_string();
+  if (word.ends_with('!')) word.pop_back();
+  const g4lidar::model* const model = g4lidar::model_named(word);
+  for (const g4lidar::parameter& each : g4lidar::all_parameters()) {
+    if (each.kind != g4lidar::parameter_kind::read_only)
+      declare(node, model != nullptr ? g4lidar::limited_to(*model, each) : each);
+    if (!has_state(each)) continue;
+    descriptor made;
+    made.description = "As the lidar has it: " + each.description;
+    made.additional_constraints = "only the node changes it; 0 or empty: not known";
+    node.declare_parameter(std::string(state_prefix).append(each.name), shown(each, {}), made,
+                           true);
+  }
+}
+
 }  // namespace
 
 void declare_parameters(rclcpp_lifecycle::LifecycleNode& node) {
@@ -166,19 +183,7 @@ void declare_parameters(rclcpp_lifecycle::LifecycleNode& node) {
                   -360.0, 360.0));
   declare(node, "mask", value(""),
           fixed("File of polygons, parts of the robot: returns inside are left out"));
-  std::string word = node.get_parameter("model").as_string();
-  if (word.ends_with('!')) word.pop_back();
-  const g4lidar::model* const model = g4lidar::model_named(word);
-  for (const g4lidar::parameter& each : g4lidar::all_parameters()) {
-    if (each.kind != g4lidar::parameter_kind::read_only)
-      declare(node, model != nullptr ? g4lidar::limited_to(*model, each) : each);
-    if (!has_state(each)) continue;
-    descriptor made;
-    made.description = "As the lidar has it: " + each.description;
-    made.additional_constraints = "only the node changes it; 0 or empty: not known";
-    node.declare_parameter(std::string(state_prefix).append(each.name), shown(each, {}), made,
-                           true);
-  }
+  declare_settings(node);
 }
 
 rclcpp::ParameterValue converted(const value& from, rclcpp::ParameterType to) {

@@ -163,6 +163,24 @@ class file_run {
   void report() {
     log_.skip(diagnostic_stage::permission, needs_device);
     log_.skip(diagnostic_stage::holder, needs_device);
+    if (!report_contents()) return;
+    report_answers();
+    report_motor();
+    if (measured_.tally().counts.packets == 0)
+      return log_.skip_from(diagnostic_stage::stream, "There are no packets.");
+    stage_report stream{.stage = diagnostic_stage::stream};
+    if (splitter_.boots() > 0) stream.add("boots", splitter_.boots());
+    judge_stream(stream, measured_, seconds_);
+    log_.report(std::move(stream));
+    report_rate(log_, measured_, device_, model_);
+    report_loss(log_, measured_, model_, &survey_, seconds_);
+    report_returns(log_, measured_, device_, model_, log_.options().directions);
+    log_.skip(diagnostic_stage::usb_latency,
+              "The reader of a file or a recording groups bytes itself.");
+  }
+
+  /// The stage baud_rate. Returns whether the packets may be those of the model.
+  bool report_contents() {
     stage_report baud{.stage = diagnostic_stage::baud_rate};
     const stream_counts& counts = measured_.tally().counts;
     baud.add("bytes", measured_.tally().arrivals.bytes());
@@ -171,13 +189,14 @@ class file_run {
     const bool has_packets = counts.packets > few_packets;
     if (!has_packets && find_other_source(baud, survey_)) {
       log_.report(std::move(baud));
-      return log_.skip_from(diagnostic_stage::answers,
-                            "There are no packets of this family of lidars.");
+      log_.skip_from(diagnostic_stage::answers, "There are no packets of this family of lidars.");
+      return false;
     }
     if (find_other_layout(baud, survey_.layout(), model_)) {
       log_.report(std::move(baud));
-      return log_.skip_from(diagnostic_stage::answers,
-                            "The packets are not those of " + one_of(model_) + ".");
+      log_.skip_from(diagnostic_stage::answers,
+                     "The packets are not those of " + one_of(model_) + ".");
+      return false;
     }
     const auto found = diagnosis_of(counts, measured_.tally().arrivals.bytes());
     const bool is_changed = survey_.change() != stream_change::none;
@@ -185,7 +204,13 @@ class file_run {
     if (found == diagnosis::unknown_bytes) baud.remark = arrived(survey_);
     if (survey_.maker() != nullptr || (found && is_changed)) baud.remark = survey_.finding();
     log_.report(std::move(baud));
-    if (counts.packets > 0 && has_request(model_, request_kind::zero_angle) && !device_.zero) {
+    return true;
+  }
+
+  /// What answers and the file state about the lidar.
+  void report_answers() {
+    const bool has_packet = measured_.tally().counts.packets > 0;
+    if (has_packet && has_request(model_, request_kind::zero_angle) && !device_.zero) {
       stage_report answers{.stage = diagnostic_stage::answers};
       answers.find(diagnosis::no_zero_angle);
       answers.remark = "The answer to command 93 is not in this file.";
@@ -197,6 +222,9 @@ class file_run {
     if (!device_.condition) device_.condition = stated_.condition();
     report_identity(log_, device_.information, model_, 0);
     report_health(log_, device_.condition);
+  }
+
+  void report_motor() {
     stage_report motor{.stage = diagnostic_stage::motor};
     // Two comparisons of the speed need three times its samples, and the motor some seconds to spin up; a head that stands
     // still shows it sooner.
@@ -204,7 +232,7 @@ class file_run {
     const std::uint64_t least = std::max(3 * steady_samples, spin_up_s * first_rate_hz(model_));
     const bool is_short =
         !measured_.was_steady() && !measured_.stands() && measured_.tally().samples < least;
-    if (is_short || counts.packets <= few_packets) {
+    if (is_short || measured_.tally().counts.packets <= few_packets) {
       motor.outcome = stage_verdict::skipped;
       motor.remark = "There are too few packets.";
     } else {
@@ -213,17 +241,6 @@ class file_run {
         motor.remark = "The angles in the packets show a constant speed.";
     }
     log_.report(std::move(motor));
-    if (counts.packets == 0)
-      return log_.skip_from(diagnostic_stage::stream, "There are no packets.");
-    stage_report stream{.stage = diagnostic_stage::stream};
-    if (splitter_.boots() > 0) stream.add("boots", splitter_.boots());
-    judge_stream(stream, measured_, seconds_);
-    log_.report(std::move(stream));
-    report_rate(log_, measured_, device_, model_);
-    report_loss(log_, measured_, model_, &survey_, seconds_);
-    report_returns(log_, measured_, device_, model_, log_.options().directions);
-    log_.skip(diagnostic_stage::usb_latency,
-              "The reader of a file or a recording groups bytes itself.");
   }
 
   stage_log& log_;

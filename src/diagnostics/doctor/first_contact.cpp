@@ -179,20 +179,7 @@ first_contact::state first_contact::search(stage_report& baud) {
   }
   if (!found) {
     if (link.port().baud() != before) static_cast<void>(link.set_baud(before));
-    const error_detail why = found.error().detail();
-    if (why != error_detail::unsupported_product && why != error_detail::other_maker) {
-      garbage_ = link.searched().unasked;
-      asked_ns_ = link.searched().asked_ns;
-      wait_for_late_answers();
-      if (found.error() == problem::garbage) tried_ = found.error().subject();
-      return state::none;
-    }
-    const std::optional<stream_survey>& other = link.searched().other;
-    if (other && find_other_source(baud, *other)) return state::refused;
-    baud.find(diagnosis::other_device);
-    baud.detail = why;
-    baud.remark = cause_of(found.error());
-    return state::refused;
+    return judge_failure(found.error(), baud);
   }
   const auto is_named = [&lidar](const model* each) { return each == lidar.which; };
   if (lidar.is_named && std::ranges::none_of(found->candidates, is_named) &&
@@ -222,6 +209,25 @@ first_contact::state first_contact::search(stage_report& baud) {
   lidar.was_scanning = found->was_scanning && !wanted.listen_only;
   link.read_as(*lidar.which);
   return state::made;
+}
+
+/// A search that has found no lidar.
+first_contact::state first_contact::judge_failure(const error& why, stage_report& baud) {
+  const search_record& searched = of_.link.searched();
+  const bool is_of_another = why.detail() == error_detail::unsupported_product ||
+                             why.detail() == error_detail::other_maker;
+  if (!is_of_another) {
+    garbage_ = searched.unasked;
+    asked_ns_ = searched.asked_ns;
+    wait_for_late_answers();
+    if (why == problem::garbage) tried_ = why.subject();
+    return state::none;
+  }
+  if (searched.other && find_other_source(baud, *searched.other)) return state::refused;
+  baud.find(diagnosis::other_device);
+  baud.detail = why.detail();
+  baud.remark = cause_of(why);
+  return state::refused;
 }
 
 /// To questions of the search.

@@ -64,6 +64,7 @@ class first_contact {
   void ask_the_rest(exchange last);
   [[nodiscard]] bool recognise(const exchange& first);
   [[nodiscard]] state search(stage_report& baud);
+  [[nodiscard]] state judge_failure(const error& why, stage_report& baud);
   [[nodiscard]] bool may_be_named(const recognised_lidar& found) const;
   void wait_for_late_answers();
   /// The lidar that was found is not the one that was named.

@@ -266,6 +266,29 @@ std::string app_footer(const program& ours) {
       ours.default_verb, source_list(), exit_code_list({}), ours.name, ours.name);
 }
 
+/// What the help has besides the verbs, and the options of all of them.
+void describe(CLI::App& app, const program& ours, const std::vector<verb>& verbs) {
+  app.set_version_flag("--version",
+                       fmt::format("{} {}.{}.{}", ours.name, G4LIDAR_VERSION_MAJOR,
+                                   G4LIDAR_VERSION_MINOR, G4LIDAR_VERSION_PATCH),
+                       "Print the version and exit");
+  app.fallthrough();
+  app.option_defaults()->disable_flag_override();
+  app.footer(verbs.size() == 1 ? "\nThe default SOURCE is the only lidar. Other sources:\n" +
+                                     source_list() + "\n" + footer_of(verbs.front())
+                               : app_footer(ours));
+  if (ours.has_config) {
+    app.set_config("--config", "", "Read options from a TOML file")->type_name("FILE");
+    app.config_formatter(std::make_shared<config_reader>());
+    app.allow_config_extras(CLI::config_extras_mode::error);
+  }
+  app.formatter(std::make_shared<help_formatter>());
+  app.get_formatter()->label("SUBCOMMAND", "COMMAND");
+  app.get_formatter()->label("Positionals", "Arguments");
+  app.get_formatter()->column_width(36);
+  for (const option_row& row : global_rows()) add(app, row);
+}
+
 }  // namespace
 
 std::string with_help(const std::string& problem, std::string_view command) {
@@ -289,29 +312,10 @@ std::function<int()> read_command_line(int argc, const char* const* argv) {
     std::ranges::rotate(words, words.begin() + 1);
     words.back() = "--help";
   }
-  const bool is_single = verbs.size() == 1;
   CLI::App app(std::string(ours.title), std::string(ours.name));
-  app.set_version_flag("--version",
-                       fmt::format("{} {}.{}.{}", ours.name, G4LIDAR_VERSION_MAJOR,
-                                   G4LIDAR_VERSION_MINOR, G4LIDAR_VERSION_PATCH),
-                       "Print the version and exit");
-  app.fallthrough();
-  app.option_defaults()->disable_flag_override();
-  app.footer(is_single ? "\nThe default SOURCE is the only lidar. Other sources:\n" +
-                             source_list() + "\n" + footer_of(verbs.front())
-                       : app_footer(ours));
-  if (ours.has_config) {
-    app.set_config("--config", "", "Read options from a TOML file")->type_name("FILE");
-    app.config_formatter(std::make_shared<config_reader>());
-    app.allow_config_extras(CLI::config_extras_mode::error);
-  }
-  app.formatter(std::make_shared<help_formatter>());
-  app.get_formatter()->label("SUBCOMMAND", "COMMAND");
-  app.get_formatter()->label("Positionals", "Arguments");
-  app.get_formatter()->column_width(36);
-  for (const option_row& row : global_rows()) add(app, row);
+  describe(app, ours, verbs);
   std::function<int()> chosen;
-  if (is_single) {
+  if (verbs.size() == 1) {
     fill(app, verbs.front());
     app.callback([&chosen, &verbs] { chosen = guarded(verbs.front()); });
   } else {
