@@ -66,14 +66,14 @@ bool waited(const lidar_options& options) {
 /// Whether the lidar may have another rate than its model: what sends there is not the named model at its rate; or it
 /// sends, and answers nothing; or nothing is heard at this rate, and the rate can be changed.
 bool may_be_at_another_rate(const error& why, const lidar_options& options) {
-  if (kind_of_source(options.device) != source_kind::device) return false;
+  const source_kind kind = kind_of_source(options.device);
+  if (kind != source_kind::device && kind != source_kind::simulated) return false;
   if (why == problem::does_not_stop) return true;
   if (options.baud != 0) return false;
   if (why == problem::garbage) return true;
   // A lidar that sends would have been heard; with several rates it was searched before.
   const bool has_bridge = is_bridge(path_of_source(options.device));
-  const model* const stated = model_in_source(options.device).value_or(nullptr);
-  const model* const named = stated != nullptr ? stated : options.model;
+  const model* const named = model_of_source(options).value_or(nullptr);
   const bool waits = named != nullptr && named->link == link_kind::two_way && named->bauds[1] == 0;
   return why == problem::silence && waits && !options.listen_only && !has_bridge;
 }

@@ -45,8 +45,8 @@ class web_socket : public std::enable_shared_from_this<web_socket> {
     kind_ = subprotocol == page_subprotocol ? client_kind::page : client_kind::foxglove;
     stream_.set_option(websocket::stream_base::timeout{close_timeout, idle_timeout, true});
     stream_.set_option(websocket::stream_base::decorator(
-        [subprotocol = std::string(subprotocol)](websocket::response_type& answer) {
-          answer.set(http::field::sec_websocket_protocol, subprotocol);
+        [chosen = std::string(subprotocol)](websocket::response_type& answer) {
+          answer.set(http::field::sec_websocket_protocol, chosen);
           answer.set(http::field::server, "g4-serve");
         }));
     stream_.auto_fragment(false);
