@@ -66,6 +66,16 @@ TEST_P(OpenAtTheOtherRate, OfASimulatedSource_IsFound) {
   EXPECT_TRUE(opened->next_scan(patience));
 }
 
+/// As one at a port, of a model that has one rate.
+TEST(OpenNamed, ASimulatedSourceAtNoRateOfItsModel_IsFound) {
+  for (const char* const source : {"sim:?model=x4&baud=153600", "sim:?baud=512000"}) {
+    auto opened = lidar::open(source);
+    ASSERT_TRUE(opened) << source << opened.error().message();
+    ASSERT_TRUE(opened->start());
+    EXPECT_TRUE(opened->next_scan(patience)) << source;
+  }
+}
+
 TEST_P(OpenAtTheOtherRate, Silence_NamesTheModelAndTheRates) {
   sim::device_options options = options_of(GetParam());
   options.dtr_starts_by = sim::dtr_start::pulse;
