@@ -81,6 +81,8 @@ result<std::optional<recorded_item>> item_rounds::begin_again() noexcept {
 }
 
 result<void> item_rounds::seek(std::int64_t from_ns) noexcept {
+  // A wake-up that an earlier call has served may be left here: it would end this one.
+  static_cast<void>(waits_->take());
   if (auto moved = from_->seek(from_ns); !moved) return moved;
   item_.reset();
   moved_ns_ = 0;
