@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include "any_scan.hpp"
 #include "g4lidar/background_reader.hpp"
 #include "g4lidar/bulk_decoder.hpp"
 #include "g4lidar/core/stream_counter.hpp"
@@ -26,25 +27,6 @@ namespace {
 
 using namespace g4lidar;
 using namespace g4lidar::extreme;
-
-grid_options any_grid(test::dice& random) {
-  return {any<frame>(random),        any<grid_pick>(random), any<bool>(random),
-          any<no_return_as>(random), any<bool>(random),      any<std::uint16_t>(random),
-          any<float>(random)};
-}
-
-scan any_scan(test::dice& random, const std::vector<point>& points) {
-  scan made;
-  made.points = points;
-  made.revolution = any<std::uint32_t>(random);
-  made.flags = any<scan_flags>(random);
-  made.reported_frequency_dhz = any<std::uint8_t>(random);
-  made.sample_rate_hz = any<std::uint32_t>(random);
-  made.turned_deg = any<float>(random);
-  made.duration_ns = any<std::int64_t>(random);
-  made.model = &models[random.below(models.size())];
-  return made;
-}
 
 TEST(ExtremeOutput, Messages) {
   many_times([](test::dice& random) {

@@ -21,6 +21,7 @@
 #include "export/svg.hpp"
 #include "export/text_points.hpp"
 #include "export/time_shift.hpp"
+#include "extreme/any_scan.hpp"
 #include "extreme/number_texts.hpp"
 #include "extreme/numbers.hpp"
 #include "io/odometry_text.hpp"
@@ -38,25 +39,6 @@ class counting_sink final : public text_sink {
  private:
   void take(std::string_view text) override { size += text.size(); }
 };
-
-grid_options any_grid(test::dice& random) {
-  return {any<frame>(random),        any<grid_pick>(random), any<bool>(random),
-          any<no_return_as>(random), any<bool>(random),      any<std::uint16_t>(random),
-          any<float>(random)};
-}
-
-scan any_scan(test::dice& random, const std::vector<point>& points) {
-  scan made;
-  made.points = points;
-  made.revolution = any<std::uint32_t>(random);
-  made.flags = any<scan_flags>(random);
-  made.reported_frequency_dhz = any<std::uint8_t>(random);
-  made.sample_rate_hz = any<std::uint32_t>(random);
-  made.turned_deg = any<float>(random);
-  made.duration_ns = any<std::int64_t>(random);
-  made.model = &models[random.below(models.size())];
-  return made;
-}
 
 TEST(ExtremeWriters, Writers) {
   counting_sink sink;
