@@ -30,6 +30,8 @@ class node_parameters {
  private:
   using changes = std::vector<rclcpp::Parameter>;
   void warn_about_unknown_ones() const;
+  /// The source and how it is opened.
+  void take_opening(g4lidar::lidar_options& into) const;
   void take_motion(session_options& into) const;
   /// How long the lidar may be missing.
   [[nodiscard]] std::chrono::milliseconds connect_timeout() const;
