@@ -44,21 +44,21 @@ inline constexpr std::uint8_t file = recording | raw_file;
 inline constexpr std::uint8_t any = live | file | pipe | port;
 }  // namespace option_user
 
-/// Who has an option; bits of a set.
+/// Who has an option; bits of a set: some commands, the node of ROS 2 as a parameter, open() of Python.
 namespace option_door {
-inline constexpr std::uint8_t command_line = 1;  ///< Some commands.
-inline constexpr std::uint8_t node = 2;          ///< The node of ROS 2, as a parameter.
-inline constexpr std::uint8_t keyword = 4;       ///< open() of Python.
+inline constexpr std::uint8_t tool = 1;
+inline constexpr std::uint8_t node = 2;
+inline constexpr std::uint8_t python = 4;
 }  // namespace option_door
 
 struct option_access;
 
 /// A row of the table.
 struct parameter {
-  std::string_view name;       ///< "range_min".
-  std::uint8_t type;           ///< The index in parameter_value.
-  parameter_kind kind;         ///< What it changes.
-  std::string_view text;       ///< "Shortest range that is kept", without a full stop.
+  std::string_view name{};                          ///< "range_min".
+  std::uint8_t type = 0;                            ///< The index in parameter_value.
+  parameter_kind kind = parameter_kind::read_only;  ///< What it changes.
+  std::string_view text{};     ///< "Shortest range that is kept", without a full stop.
   std::string_view details{};  ///< More about it.
   std::string_view unit{};     ///< Of a number: "m"; else empty.
   std::string_view form{};     ///< Of a text: "FROM:TO"; of a number in a help: "N".
@@ -70,9 +70,8 @@ struct parameter {
   std::array<double, 3> range{};  ///< From, to, step, of all models together; all 0: none.
   std::uint8_t users = option_user::any;
   std::uint8_t doors = 0;
-  std::string_view
-      flag{};  ///< On the command line, if it is not the name with dashes: "--all-ports".
-  std::string_view node_name{};           ///< In ROS, if it is not the name.
+  std::string_view flag{};       ///< On the command line, if not the name with dashes: "--listen".
+  std::string_view node_name{};  ///< In ROS, if it is not the name.
   const setting_info* setting = nullptr;  ///< Of a device.
   const option_access* access = nullptr;  ///< How it is set; null: by the program that has it.
 

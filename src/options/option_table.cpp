@@ -18,10 +18,12 @@ namespace {
 using namespace option_user;
 using namespace option_door;
 using enum parameter_kind;
-using words = std::string_view;
+using literal = std::string_view;
+using options = lidar_options;
 
 // How a value of its type becomes that of a member.
 template <class Number>
+  requires std::is_arithmetic_v<Number>
 void take(Number& into, const parameter_value& value) {
   if constexpr (std::is_same_v<Number, bool> || std::is_same_v<Number, double>)
     into = std::get<Number>(value);
@@ -36,6 +38,7 @@ void take(zero_angle& into, const parameter_value& value) {
   into.cdeg = static_cast<std::int32_t>(std::lround(100.0 * std::get<double>(value)));
 }
 template <class Value>
+  requires(!std::is_enum_v<Value> && !std::is_same_v<Value, scan_frequency>)
 void take(std::optional<Value>& into, const parameter_value& value) {
   take(into.emplace(), value);
 }
@@ -51,39 +54,54 @@ std::int64_t count_of(const Value& member) {
     return static_cast<std::int64_t>(member);
 }
 
-template <auto Part>
-constexpr bool (*differs)(const lidar_options&, const lidar_options&) =
-    [](const lidar_options& a, const lidar_options& b) { return !(Part(a) == Part(b)); };
-template <auto Part>
-constexpr void (*copy)(lidar_options&, const lidar_options&) =
-    [](lidar_options& to, const lidar_options& from) { Part(to) = Part(from); };
-template <auto Part>
-std::string set(lidar_options& into, const parameter_value& value) {
-  take(Part(into), value);
-  return {};
+/// The member that pointers lead to.
+template <auto... Members>
+constexpr auto& part(auto& of) {
+  return (of.*....*Members);
 }
-
-/// Of an option: `Part(options)` is the member.
-template <auto Part>
-constexpr option_access member{differs<Part>, copy<Part>, set<Part>, nullptr};
-/// Of one whose value problem_with() checks.
-template <auto Part>
-constexpr option_access number{differs<Part>, copy<Part>, set<Part>,
-                               [](const lidar_options& of) { return count_of(Part(of)); }};
-/// Of the setting with this number.
-template <std::size_t Index, auto Part>
-constexpr option_access of_setting{
-    differs<Part>, copy<Part>,
-    [](lidar_options& into, const parameter_value& value) -> std::string {
-      const auto made = answer_of(setting_rows[Index], value, into.model);
-      if (!made) return std::string(made.error().subject());
-      set_option(into, *made);
-      return {};
+/// Of the option that is this member.
+template <auto... Members>
+constexpr option_access member{
+    [](const options& a, const options& b) {
+      return !(part<Members...>(a) == part<Members...>(b));
+    },
+    [](options& to, const options& from) { part<Members...>(to) = part<Members...>(from); },
+    [](options& into, const parameter_value& value) {
+      if constexpr (requires { take(part<Members...>(into), value); })
+        take(part<Members...>(into), value);
+      return std::string();
     },
     nullptr};
+/// With other ways to set it, and to compare it with its limits.
+constexpr option_access changed(option_access made, decltype(option_access::set) set,
+                                decltype(option_access::number) number = nullptr) {
+  made.number = number;
+  if (set != nullptr) made.set = set;
+  return made;
+}
+/// Of one whose limits problem_with() checks.
+template <auto... Members>
+constexpr option_access number = changed(
+    member<Members...>, nullptr, [](const options& of) { return count_of(part<Members...>(of)); });
+
+template <auto Member>
+constexpr option_access timed = number<&options::tuning, Member>;
+template <auto Member>
+constexpr option_access played = member<&options::playback, Member>;
+
+/// Of the setting with this number.
+template <std::size_t Index>
+std::string set_setting(options& into, const parameter_value& value) {
+  const auto made = answer_of(setting_rows[Index], value, into.model);
+  if (!made) return std::string(made.error().subject());
+  set_option(into, *made);
+  return {};
+}
+template <std::size_t Index, auto Member>
+constexpr option_access setting_access = changed(member<Member>, set_setting<Index>);
 
 std::string set_model(lidar_options& into, const parameter_value& value) {
-  words label = std::get<std::string>(value);
+  literal label = std::get<std::string>(value);
   const bool insists = label.ends_with('!');
   if (insists) label.remove_suffix(1);
   const model* const found = model_named(label);
@@ -92,221 +110,194 @@ std::string set_model(lidar_options& into, const parameter_value& value) {
   into.insist_on_model = into.insist_on_model || insists;
   return {};
 }
-constexpr auto model_part = [](auto& of) -> auto& { return of.model; };
-constexpr option_access model_access{differs<model_part>, copy<model_part>, set_model, nullptr};
+constexpr option_access model_access = changed(member<&options::model>, set_model);
 
-constexpr std::array<words, 3> paces{"automatic", "packets", "revolutions"};
-constexpr auto pace_part = [](auto& of) -> auto& { return of.tuning.pace; };
-constexpr option_access pace_access{
-    differs<pace_part>, copy<pace_part>,
-    [](lidar_options& into, const parameter_value& value) -> std::string {
-      const auto at = std::ranges::find(paces, std::get<std::string>(value));
-      if (at == paces.end())
-        return in_quotes(std::get<std::string>(value)) + " is not one of " + list_of(paces);
-      into.tuning.pace = static_cast<read_pace>(at - paces.begin());
-      return {};
-    },
-    [](const lidar_options& of) { return static_cast<std::int64_t>(of.tuning.pace); }};
+constexpr std::array<literal, 3> paces{"automatic", "packets", "revolutions"};
+std::string set_pace(options& into, const parameter_value& value) {
+  const auto at = std::ranges::find(paces, std::get<std::string>(value));
+  if (at == paces.end()) return "it is not one of " + list_of(paces);
+  into.tuning.pace = static_cast<read_pace>(at - paces.begin());
+  return {};
+}
+constexpr option_access pace_access =
+    changed(member<&options::tuning, &lidar_tuning::pace>, set_pace,
+            [](const options& of) { return static_cast<std::int64_t>(of.tuning.pace); });
 
-template <std::size_t Index, auto Part>
+/// `with`: the parts of a row that few have.
+constexpr parameter row(literal name, std::uint8_t type, parameter_kind kind, std::uint8_t doors,
+                        literal about, parameter with = {}, std::uint8_t users = any,
+                        const option_access* access = nullptr) {
+  with.name = name;
+  with.type = type;
+  with.kind = kind;
+  with.doors = doors;
+  with.text = about;
+  with.users = users;
+  with.access = access;
+  return with;
+}
+constexpr parameter opening(literal name, std::uint8_t type, std::uint8_t users, std::uint8_t doors,
+                            const option_access* access, literal about,
+                            const parameter& with = {}) {
+  return row(name, type, read_only, doors, about, with, users, access);
+}
+constexpr std::uint8_t programs = tool | node;
+constexpr std::uint8_t all_doors = programs | python;
+
+template <std::size_t Index, auto Member>
 constexpr parameter setting_row() {
   constexpr std::array types{is_integer, is_double, is_string, is_bool};
   const setting_info& of = setting_rows[Index];
-  return {.name = of.name,
-          .type = types.at(static_cast<std::size_t>(of.type)),
-          .kind = device,
-          .text = of.text,
-          .unit = of.unit,
-          .users = live,
-          .doors = node | keyword,
-          .setting = &of,
-          .access = &of_setting<Index, Part>};
+  parameter made = row(of.name, types.at(static_cast<std::size_t>(of.type)), device, node | python,
+                       of.text, {.unit = of.unit}, live, &setting_access<Index, Member>);
+  made.setting = &of;
+  return made;
 }
 
-constexpr std::array<words, 4> speckle_words{"window", "count", "near", "ratio"};
-constexpr std::array<words, 2> edge_words{"window", "angle"};
-constexpr std::array<words, 2> near_words{"shortest", "revolutions"};
-constexpr std::array<words, 3> no_return_words{"inf", "nan", "max"};
-constexpr std::array<words, 2> near_as_words{"nan", "minus-inf"};
-constexpr std::array<words, 2> order_words{"angle", "time"};
-constexpr std::array<words, 4> deskew_words{"none", "odometry", "scans", "tf"};
+constexpr std::array<literal, 4> speckle_words{"window", "count", "near", "ratio"};
+constexpr std::array<literal, 2> edge_words{"window", "angle"};
+constexpr std::array<literal, 2> near_words{"shortest", "revolutions"};
+constexpr std::array<literal, 3> no_return_words{"inf", "nan", "max"};
+constexpr std::array<literal, 2> near_as_words{"nan", "minus-inf"};
+constexpr std::array<literal, 2> order_words{"angle", "time"};
+constexpr std::array<literal, 4> deskew_words{"none", "odometry", "scans", "tf"};
 
-// clang-format off: a row of the table is not a column
 constexpr std::array table = std::to_array<parameter>({
     // How a lidar is opened.
-    {.name = "source", .type = is_string, .kind = read_only,
-     .text = "The lidar or the recording",
-     .form = "/dev/ttyUSB0, serial:NUMBER, usb:PATH, tcp:HOST:PORT, a file, or sim:",
-     .unset = "the only lidar", .doors = node},
-    {.name = "model", .type = is_string, .kind = read_only,
-     .text = "Model: x4, x2, ...; x4! insists",
-     .form = "MODEL", .unset = "searched, or as a file shows",
-     .doors = command_line | node | keyword, .access = &model_access},
-    {.name = "insist_on_model", .type = is_bool, .kind = read_only,
-     .text = "The model is right, whatever the lidar reports or a recording states",
-     .doors = node | keyword,
-     .access = &member<[](auto& of) -> auto& { return of.insist_on_model; }>},
-    {.name = "listen_only", .type = is_bool, .kind = read_only,
-     .text = "Only listen: not a byte is sent",
-     .details = "for a data wire alone, or a lidar that another computer drives",
-     .users = live, .doors = command_line | node | keyword, .flag = "--listen",
-     .access = &member<[](auto& of) -> auto& { return of.listen_only; }>},
-    {.name = "leave_dtr", .type = is_bool, .kind = read_only,
-     .text = "Do not set the line DTR of the port",
-     .details = "a motor that it drives keeps its state",
-     .users = live, .doors = command_line | node | keyword,
-     .access = &member<[](auto& of) -> auto& { return of.leave_dtr; }>},
-    {.name = "baud", .type = is_integer, .kind = read_only,
-     .text = "Baud rate", .form = "RATE", .unset = "searched, or by the model",
-     .range = {1, 10'000'000, 1}, .users = live, .doors = command_line | node | keyword,
-     .access = &member<[](auto& of) -> auto& { return of.baud; }>},
-    {.name = "probe_all_ports", .type = is_bool, .kind = read_only,
-     .text = "Without a name: look at all ports, not only at a CP2102",
-     .users = port, .doors = command_line, .flag = "--all-ports",
-     .access = &member<[](auto& of) -> auto& { return of.probe_all_ports; }>},
-    {.name = "zero_angle", .type = is_double, .kind = read_only,
-     .text = "Added to all angles, not the answer to command 93", .unit = "degrees",
-     .form = "DEG", .range = {-360, 360, 0}, .doors = command_line | keyword,
-     .access = &member<[](auto& of) -> auto& { return of.zero_angle; }>},
-    setting_row<0, [](auto& of) -> auto& { return of.sample_rate; }>(),
-    setting_row<1, [](auto& of) -> auto& { return of.frequency; }>(),
-    setting_row<2, [](auto& of) -> auto& { return of.direction; }>(),
-    setting_row<3, [](auto& of) -> auto& { return of.constant; }>(),
-    setting_row<4, [](auto& of) -> auto& { return of.idle; }>(),
-    setting_row<5, [](auto& of) -> auto& { return of.protection; }>(),
-    {.name = "reconnect", .type = is_bool, .kind = read_only,
-     .text = "Reconnect after a loss", .users = live, .doors = keyword, .flag = "--on-loss",
-     .access = &member<[](auto& of) -> auto& { return of.reconnect; }>},
-    {.name = "partial_scans", .type = is_bool, .kind = read_only,
-     .text = "Also pieces of revolutions", .doors = keyword,
-     .access = &member<[](auto& of) -> auto& { return of.partial_scans; }>},
-    {.name = "pace", .type = is_string, .kind = read_only,
-     .text = "When a running scan is read", .words = paces, .range = {0, 2, 1}, .users = live,
-     .access = &pace_access},
-    {.name = "longest_backoff", .type = is_integer, .kind = read_only,
-     .text = "Longest time between two attempts to reconnect", .unit = "ms",
-     .range = {1, 1000, 1}, .users = live, .doors = keyword,
-     .access = &number<[](auto& of) -> auto& { return of.tuning.longest_backoff; }>},
-    {.name = "answer_time", .type = is_integer, .kind = read_only,
-     .text = "Longest wait for an answer", .unit = "ms", .range = {10, 10'000, 1},
-     .users = live, .doors = keyword,
-     .access = &number<[](auto& of) -> auto& { return of.tuning.answer_time; }>},
-    {.name = "stall_time", .type = is_integer, .kind = read_only,
-     .text = "Longest time of a scan without a packet", .unit = "ms", .range = {100, 60'000, 1},
-     .users = live, .doors = keyword,
-     .access = &number<[](auto& of) -> auto& { return of.tuning.stall_time; }>},
-    {.name = "batch", .type = is_integer, .kind = read_only,
-     .text = "Least time between two readings", .unit = "ms", .range = {0, 100, 1},
-     .doors = keyword,
-     .access = &number<[](auto& of) -> auto& { return of.tuning.batch; }>},
-    {.name = "transport_delay", .type = is_integer, .kind = read_only,
-     .text = "Least delay between measurement and arrival", .unit = "ns",
-     .range = {0, 1e9, 1}, .doors = keyword,
-     .access = &number<[](auto& of) -> auto& { return of.tuning.transport_delay; }>},
-    {.name = "speed", .type = is_double, .kind = read_only,
-     .text = "Speed of a recording; 1: as recorded, 0.5: half as fast", .form = "FACTOR",
-     .usual = "1", .range = {0.001, 1000, 0}, .users = file,
-     .doors = command_line | node | keyword, .flag = "--playback-speed",
-     .node_name = "playback_speed",
-     .access = &member<[](auto& of) -> auto& { return of.playback.speed; }>},
-    {.name = "loop", .type = is_bool, .kind = read_only,
-     .text = "Start a recording again at its end", .users = file,
-     .doors = command_line | node | keyword,
-     .access = &member<[](auto& of) -> auto& { return of.playback.loop; }>},
-    {.name = "begin", .type = is_integer, .kind = read_only,
-     .text = "Begin at this time of the recording", .unit = "ns", .users = file,
-     .doors = keyword, .flag = "--from",
-     .access = &member<[](auto& of) -> auto& { return of.playback.from_ns; }>},
-    {.name = "end", .type = is_integer, .kind = read_only,
-     .text = "End at this time of the recording", .unit = "ns", .users = file,
-     .doors = keyword, .flag = "--to",
-     .access = &member<[](auto& of) -> auto& { return of.playback.to_ns; }>},
-    {.name = "raw_sample_rate_hz", .type = is_integer, .kind = read_only,
-     .text = "Samples per second of raw bytes", .form = "HZ", .unset = "as the model",
-     .range = {1, 1'000'000, 1}, .users = raw_file, .doors = command_line | keyword,
-     .flag = "--sample-rate",
-     .access = &number<[](auto& of) -> auto& { return of.raw_sample_rate_hz; }>},
+    row("source", is_string, read_only, node, "The lidar or the recording",
+        {.form = "/dev/ttyUSB0, serial:NUMBER, usb:PATH, tcp:HOST:PORT, a file, or sim:",
+         .unset = "the only lidar"}),
+    opening("model", is_string, any, all_doors, &model_access, "Model: x4, x2, ...; x4! insists",
+            {.form = "MODEL", .unset = "searched, or as a file shows"}),
+    opening("insist_on_model", is_bool, any, node | python, &member<&options::insist_on_model>,
+            "The model is right, whatever the lidar reports or a recording states"),
+    opening("listen_only", is_bool, live, all_doors, &member<&options::listen_only>,
+            "Only listen: not a byte is sent",
+            {.details = "for a data wire alone, or a lidar that another computer drives",
+             .flag = "--listen"}),
+    opening("leave_dtr", is_bool, live, all_doors, &member<&options::leave_dtr>,
+            "Do not set the line DTR of the port",
+            {.details = "a motor that it drives keeps its state"}),
+    opening("baud", is_integer, live, all_doors, &member<&options::baud>, "Baud rate",
+            {.form = "RATE", .unset = "searched, or by the model", .range = {1, 10'000'000, 1}}),
+    opening("probe_all_ports", is_bool, port, tool, &member<&options::probe_all_ports>,
+            "Without a name: look at all ports, not only at a CP2102", {.flag = "--all-ports"}),
+    opening("zero_angle", is_double, any, tool | python, &member<&options::zero_angle>,
+            "Added to all angles, not the answer to tool 93",
+            {.unit = "degrees", .form = "DEG", .range = {-360, 360, 0}}),
+    setting_row<0, &options::sample_rate>(),
+    setting_row<1, &options::frequency>(),
+    setting_row<2, &options::direction>(),
+    setting_row<3, &options::constant>(),
+    setting_row<4, &options::idle>(),
+    setting_row<5, &options::protection>(),
+    opening("reconnect", is_bool, live, python, &member<&options::reconnect>,
+            "Reconnect after a loss", {.flag = "--on-loss"}),
+    opening("partial_scans", is_bool, any, python, &member<&options::partial_scans>,
+            "Also pieces of revolutions"),
+    opening("pace", is_string, live, 0, &pace_access, "When a running scan is read",
+            {.words = paces, .range = {0, 2, 1}}),
+    opening("longest_backoff", is_integer, live, python, &timed<&lidar_tuning::longest_backoff>,
+            "Longest time between two attempts to reconnect",
+            {.unit = "ms", .range = {1, 1000, 1}}),
+    opening("answer_time", is_integer, live, python, &timed<&lidar_tuning::answer_time>,
+            "Longest wait for an answer", {.unit = "ms", .range = {10, 10'000, 1}}),
+    opening("stall_time", is_integer, live, python, &timed<&lidar_tuning::stall_time>,
+            "Longest time of a scan without a packet", {.unit = "ms", .range = {100, 60'000, 1}}),
+    opening("batch", is_integer, any, python, &timed<&lidar_tuning::batch>,
+            "Least time between two readings", {.unit = "ms", .range = {0, 100, 1}}),
+    opening("transport_delay", is_integer, any, python, &timed<&lidar_tuning::transport_delay>,
+            "Least delay between measurement and arrival", {.unit = "ns", .range = {0, 1e9, 1}}),
+    opening("speed", is_double, file, all_doors, &played<&playback_options::speed>,
+            "Speed of a recording; 1: as recorded, 0.5: half as fast",
+            {.form = "FACTOR",
+             .usual = "1",
+             .range = {0.001, 1000, 0},
+             .flag = "--playback-speed",
+             .node_name = "playback_speed"}),
+    opening("loop", is_bool, file, all_doors, &played<&playback_options::loop>,
+            "Start a recording again at its end"),
+    opening("begin", is_integer, file, python, &played<&playback_options::from_ns>,
+            "Begin at this time of the recording", {.unit = "ns", .flag = "--from"}),
+    opening("end", is_integer, file, python, &played<&playback_options::to_ns>,
+            "End at this time of the recording", {.unit = "ns", .flag = "--to"}),
+    opening("raw_sample_rate_hz", is_integer, raw_file, tool | python,
+            &number<&options::raw_sample_rate_hz>, "Samples per second of raw bytes",
+            {.form = "HZ",
+             .unset = "as the model",
+             .range = {1, 1'000'000, 1},
+             .flag = "--sample-rate"}),
     // Which points are kept, and what becomes of the others.
-    {.name = "range", .type = is_string, .kind = filter,
-     .text = "Keep returns in this range, in meters: 0.28:16", .form = "FROM:TO",
-     .doors = command_line},
-    {.name = "range_min", .type = is_double, .kind = filter,
-     .text = "Shortest range that is kept", .unit = "m", .usual = "0", .range = {0, 100, 0},
-     .doors = node},
-    {.name = "range_max", .type = is_double, .kind = filter,
-     .text = "Longest range that is kept", .details = "also that of messages, up to the model's",
-     .unit = "m", .usual = "100", .range = {0, 100, 0}, .doors = node},
-    {.name = "angle_min", .type = is_double, .kind = program,
-     .text = "First direction that is kept, counter-clockwise from ahead", .unit = "degrees",
-     .usual = "-180", .range = {-360, 360, 0}, .doors = node},
-    {.name = "angle_max", .type = is_double, .kind = program,
-     .text = "Last direction that is kept, counter-clockwise from angle_min", .unit = "degrees",
-     .usual = "180", .range = {-360, 360, 0}, .doors = node},
-    {.name = "fov", .type = is_string, .kind = filter,
-     .text = "Keep these directions, in degrees of the frame: -90:90",
-     .details = "empty: from angle_min to angle_max", .form = "FROM:TO",
-     .doors = command_line | node},
-    {.name = "ignore", .type = is_string, .kind = filter,
-     .text = "Leave out these directions: 30:40",
-     .details = "several with spaces between them: 30:40 90:100; off: none", .form = "FROM:TO",
-     .doors = command_line | node},
-    {.name = "mask", .type = is_string, .kind = read_only,
-     .text = "Leave out returns inside the polygons of a file", .form = "FILE",
-     .doors = command_line | node},
-    {.name = "speckle", .type = is_string, .kind = filter,
-     .text = "Leave out returns without another one near them", .form = "LIMITS",
-     .usual = "off", .words = speckle_words, .doors = command_line | node},
-    {.name = "edges", .type = is_string, .kind = filter,
-     .text = "Leave out veiling points at jumps of the range", .form = "LIMITS", .usual = "off",
-     .words = edge_words, .doors = command_line | node},
-    {.name = "near", .type = is_string, .kind = filter,
-     .text = "Flag directions where something may be too near for a return", .form = "LIMITS",
-     .usual = "off", .words = near_words, .doors = command_line | node},
-    {.name = "near_as", .type = is_string, .kind = filter,
-     .text = "What the range of a direction flagged as near becomes", .usual = "nan",
-     .words = near_as_words, .doors = command_line | node},
-    {.name = "no_return", .type = is_string, .kind = filter,
-     .text = "What the range of a direction without return becomes",
-     .details = "it is not free space", .usual = "inf", .words = no_return_words,
-     .doors = command_line | node},
+    row("range", is_string, filter, tool, "Keep returns in this range, in meters: 0.28:16",
+        {.form = "FROM:TO"}),
+    row("range_min", is_double, filter, node, "Shortest range that is kept",
+        {.unit = "m", .usual = "0", .range = {0, 100, 0}}),
+    row("range_max", is_double, filter, node, "Longest range that is kept",
+        {.details = "also that of messages, up to the model's",
+         .unit = "m",
+         .usual = "100",
+         .range = {0, 100, 0}}),
+    row("angle_min", is_double, program, node,
+        "First direction that is kept, counter-clockwise from ahead",
+        {.unit = "degrees", .usual = "-180", .range = {-360, 360, 0}}),
+    row("angle_max", is_double, program, node,
+        "Last direction that is kept, counter-clockwise from angle_min",
+        {.unit = "degrees", .usual = "180", .range = {-360, 360, 0}}),
+    row("fov", is_string, filter, programs,
+        "Keep these directions, in degrees of the frame: -90:90",
+        {.details = "empty: from angle_min to angle_max", .form = "FROM:TO"}),
+    row("ignore", is_string, filter, programs, "Leave out these directions: 30:40",
+        {.details = "several with spaces between them: 30:40 90:100; off: none",
+         .form = "FROM:TO"}),
+    row("mask", is_string, read_only, programs, "Leave out returns inside the polygons of a file",
+        {.form = "FILE"}),
+    row("speckle", is_string, filter, programs, "Leave out returns without another one near them",
+        {.form = "LIMITS", .usual = "off", .words = speckle_words}),
+    row("edges", is_string, filter, programs, "Leave out veiling points at jumps of the range",
+        {.form = "LIMITS", .usual = "off", .words = edge_words}),
+    row("near", is_string, filter, programs,
+        "Flag directions where something may be too near for a return",
+        {.form = "LIMITS", .usual = "off", .words = near_words}),
+    row("near_as", is_string, filter, programs,
+        "What the range of a direction flagged as near becomes",
+        {.usual = "nan", .words = near_as_words}),
+    row("no_return", is_string, filter, programs,
+        "What the range of a direction without return becomes",
+        {.details = "it is not free space", .usual = "inf", .words = no_return_words}),
     // What programs make of the scans.
-    {.name = "standby", .type = is_bool, .kind = program,
-     .text = "Rest the motor while nobody subscribes", .details = "to a scan or a cloud",
-     .doors = command_line | node},
-    {.name = "frame_id", .type = is_string, .kind = read_only, .text = "Frame of the lidar",
-     .form = "NAME", .usual = "laser", .doors = command_line | node},
-    {.name = "grid", .type = is_integer, .kind = read_only,
-     .text = "Ranges of each LaserScan", .form = "N", .unset = "by the model; G4: 720",
-     .range = {1, 65'536, 1}, .doors = command_line | node},
-    {.name = "order", .type = is_string, .kind = read_only,
-     .text = "Order of the ranges of a LaserScan; time: z is down, not for slam_toolbox",
-     .usual = "angle", .words = order_words, .doors = command_line | node},
-    {.name = "base_frame", .type = is_string, .kind = read_only, .text = "Frame of the robot",
-     .form = "NAME", .usual = "base_link", .doors = command_line | node},
-    {.name = "odometry_frame", .type = is_string, .kind = read_only,
-     .text = "Frame of the odometry", .form = "NAME", .usual = "odom",
-     .doors = command_line | node},
-    {.name = "mount", .type = is_string, .kind = read_only,
-     .text = "Where the lidar is on the robot; down: top down",
-     .details = "in metres and degrees, for /tf_static and deskewing", .form = "X,Y,DEG[,down]",
-     .unset = "0,0,0", .doors = command_line | node},
-    {.name = "deskew", .type = is_string, .kind = read_only,
-     .text = "Deskew each revolution by the odometry, or by the scans alone",
-     .details = "tf: from odometry_frame to base_frame", .usual = "none",
-     .words = deskew_words, .node_words = 1,
-     .doors = command_line | node},
-    {.name = "connect_timeout", .type = is_double, .kind = read_only,
-     .text = "How long the lidar may be missing until the node is unconfigured",
-     .details = "0: for ever", .unit = "s", .usual = "0", .range = {0, 3600, 0}, .doors = node},
-    {.name = "bond_heartbeat_period", .type = is_double, .kind = read_only,
-     .text = "Period of a bond with a lifecycle manager", .details = "0.1 for Nav2; 0: none",
-     .unit = "s", .usual = "0", .range = {0, 10, 0}, .doors = node},
-    {.name = "autostart", .type = is_bool, .kind = read_only,
-     .text = "The node configures and activates itself at the start", .doors = node},
-    {.name = "serial_number", .type = is_string, .kind = read_only,
-     .text = "Serial number of the lidar"},
+    row("standby", is_bool, program, programs, "Rest the motor while nobody subscribes",
+        {.details = "to a scan or a cloud"}),
+    row("frame_id", is_string, read_only, programs, "Frame of the lidar",
+        {.form = "NAME", .usual = "laser"}),
+    row("grid", is_integer, read_only, programs, "Ranges of each LaserScan",
+        {.form = "N", .unset = "by the model; G4: 720", .range = {1, 65'536, 1}}),
+    row("order", is_string, read_only, programs,
+        "Order of the ranges of a LaserScan; time: z is down, not for slam_toolbox",
+        {.usual = "angle", .words = order_words}),
+    row("base_frame", is_string, read_only, programs, "Frame of the robot",
+        {.form = "NAME", .usual = "base_link"}),
+    row("odometry_frame", is_string, read_only, programs, "Frame of the odometry",
+        {.form = "NAME", .usual = "odom"}),
+    row("mount", is_string, read_only, programs, "Where the lidar is on the robot; down: top down",
+        {.details = "in metres and degrees, for /tf_static and deskewing",
+         .form = "X,Y,DEG[,down]",
+         .unset = "0,0,0"}),
+    row("deskew", is_string, read_only, programs,
+        "Deskew each revolution by the odometry, or by the scans alone",
+        {.details = "tf: from odometry_frame to base_frame",
+         .usual = "none",
+         .words = deskew_words,
+         .node_words = 1}),
+    row("connect_timeout", is_double, read_only, node,
+        "How long the lidar may be missing until the node is unconfigured",
+        {.details = "0: for ever", .unit = "s", .usual = "0", .range = {0, 3600, 0}}),
+    row("bond_heartbeat_period", is_double, read_only, node,
+        "Period of a bond with a lifecycle manager",
+        {.details = "0.1 for Nav2; 0: none", .unit = "s", .usual = "0", .range = {0, 10, 0}}),
+    row("autostart", is_bool, read_only, node,
+        "The node configures and activates itself at the start"),
+    row("serial_number", is_string, read_only, 0, "Serial number of the lidar"),
 });
-// clang-format on
 
 }  // namespace
 
