@@ -87,11 +87,14 @@ std::string flag_of(const parameter& of) {
 
 parameter_limits limits_of(const parameter& of, const model* which) {
   if (of.setting == nullptr) {
-    if (of.type == is_string && of.form != "LIMITS")
-      return {of.words.empty() ? std::string(of.form) : list_of(of.words), {}};
-    if (of.words.empty()) return {{}, of.range};
+    if (of.name == "model") return {model_words(), {}};
+    if (of.words.empty() || of.type != is_string) {
+      const bool has_form = of.form.find_first_of(":,") != std::string_view::npos;
+      return {has_form ? std::string(of.form) : "", of.range};
+    }
+    if (of.form.empty()) return {list_of(of.words), {}};
     return {"off, on, or limits: " +
-            list_of(of.words, [](std::string_view each) { return std::string(each) + "=N"; }, ",")};
+            list_of(of.words, [](std::string_view each) { return std::string(each) + "=N"; })};
   }
   parameter_limits made = limits_of(*of.setting);
   if (which == nullptr) return made;
