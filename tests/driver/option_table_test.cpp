@@ -43,8 +43,9 @@ TEST(OptionTable, EachRowIsComplete) {
     if (each.usual.empty()) continue;
     EXPECT_EQ(converted(std::string(each.usual), each.type).index(), each.type) << each.name;
     filter_settings filters;
-    if (each.kind == parameter_kind::filter)
+    if (each.kind == parameter_kind::filter) {
       EXPECT_EQ(set_filter(filters, each.name, each.usual), "") << each.name;
+    }
   }
   EXPECT_EQ(find_parameter("rnage_min"), nullptr);
 }
@@ -149,8 +150,8 @@ TEST(OptionTable, TheParametersOfTheNodeAreInItsFileAndItsDocument) {
 TEST(OptionTable, TheOptionsOfPythonAreInItsInterface) {
   const std::string source = contents_of("python/src/opening.cpp");
   for (const parameter& each : all_parameters()) {
-    if (each.is_of(option_door::python) && each.setting == nullptr)
-      EXPECT_THAT(source, HasSubstr("\"" + std::string(each.name) + "\"_a"));
+    if (!each.is_of(option_door::python) || each.setting != nullptr) continue;
+    EXPECT_THAT(source, HasSubstr("\"" + std::string(each.name) + "\"_a"));
   }
 }
 
