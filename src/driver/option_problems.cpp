@@ -82,8 +82,15 @@ constexpr std::array option_rows{
     row("loop", any_file, [](auto& of) -> auto& { return of.playback.loop; }),
     row("range", any_file, [](auto& of) -> auto& { return of.playback.from_ns; }),
     row("range", any_file, [](auto& of) -> auto& { return of.playback.to_ns; }),
-    row("raw_sample_rate_hz", raw_file, [](auto& of) -> auto& { return of.raw_sample_rate_hz; }),
+    row("raw_sample_rate_hz", raw_file | counted_pipe,
+        [](auto& of) -> auto& { return of.raw_sample_rate_hz; }),
+    row("counts_times", raw_file | pipe, [](auto& of) -> auto& { return of.counts_times; }),
 };
+
+option_users with_counted(option_users users, const lidar_options& options) noexcept {
+  const bool counts = (users & pipe) != 0 && options.counts_times;
+  return counts ? static_cast<option_users>(users | counted_pipe) : users;
+}
 
 std::string_view words_for(option_users users) noexcept {
   switch (users) {
@@ -95,6 +102,7 @@ std::string_view words_for(option_users users) noexcept {
     case raw_file:
       return "a file of raw bytes";
     case pipe:
+    case pipe | counted_pipe:
       return "a pipe";
     default:
       return "a file";
@@ -105,6 +113,7 @@ std::string_view words_for(option_users users) noexcept {
 
 std::optional<error> problem_with_users(const lidar_options& options, option_users users) noexcept {
   const lidar_options usual;
+  users = with_counted(users, options);
   for (const option_row& each : option_rows) {
     if ((each.users & users) != 0 || !each.differs(options, usual)) continue;
     error_context about(each.name);
@@ -117,6 +126,7 @@ std::optional<error> problem_with_users(const lidar_options& options, option_use
 
 lidar_options without_others(lidar_options options, option_users users) {
   const lidar_options usual;
+  users = with_counted(users, options);
   for (const option_row& each : option_rows) {
     if ((each.users & users) == 0) each.copy(options, usual);
   }

@@ -24,11 +24,12 @@ namespace g4lidar {
 
 /// What uses options; bits of a set.
 enum option_user : std::uint8_t {
-  live = 1,       ///< A port, a network bridge, `sim:`.
-  recording = 2,  ///< A file with times.
-  raw_file = 4,   ///< A file of raw bytes.
-  pipe = 8,       ///< Raw bytes as they come.
-  port = 16,      ///< Beside `live`: a port of this computer, which may be searched.
+  live = 1,           ///< A port, a network bridge, `sim:`.
+  recording = 2,      ///< A file with times.
+  raw_file = 4,       ///< A file of raw bytes.
+  pipe = 8,           ///< Raw bytes as they come.
+  port = 16,          ///< Beside `live`: a port of this computer, which may be searched.
+  counted_pipe = 32,  ///< Beside `pipe`: with lidar_options::counts_times.
 };
 using option_users = std::uint8_t;
 
