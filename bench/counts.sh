@@ -60,7 +60,7 @@ row "bursts of 256 bytes, with a running diagnosis" "$(per_sample 256 judged)" "
 for model in x4 g6 tg30 g2 s4b scl t-mini t-mini-plus-sh; do
   row "the same, samples of a $model" "$(per_sample 256 "$model")" "" 78 "78"
 done
-row "instructions per point, convert of raw bytes to csv" "$(per_point bin)" "" 600 "600"
+row "instructions per point, convert of raw bytes to csv" "$(per_point bin)" "" 800 "800"
 row "the same of a recording with scans" "$(per_point mcap)" "" 800 "800"
 row "system calls per second, only scans taken" "$(calls scans)" "" 100 "100"
 row "the same with batches of 20 ms" "$(calls 20)" "" 110 "110"

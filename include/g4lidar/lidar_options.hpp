@@ -99,6 +99,9 @@ struct lidar_options {
   /// Samples per second of raw bytes in a file, which contain no times; 1 to 1,000,000. If it is not
   /// given, first_rate_hz() of the model.
   std::optional<std::uint32_t> raw_sample_rate_hz{};
+  /// Raw bytes of a pipe: the times of points are counted in the same way, from when the first one was read, instead of
+  /// estimated from when the bytes are read. Those of a file always are.
+  bool counts_times = false;
   /// Called with the connector of each attempt to open, if it is set: to record, to observe. What it
   /// returns is used instead; its error ends the attempt.
   std::function<result<std::unique_ptr<connector>>(std::unique_ptr<connector>)> wrap{};

@@ -133,6 +133,8 @@ class point_pipeline {
   /// A new stream of points begins, including those of the last event. The unfinished revolution
   /// becomes a piece.
   void begin(std::uint32_t sample_rate_hz) noexcept;
+  /// See timed_decoder::count_times(). Before begin().
+  void count_times(std::uint32_t sample_rate_hz) noexcept { decoder_.count_times(sample_rate_hz); }
   /// The stream of points has ended: the unfinished revolution becomes a piece.
   void end() noexcept;
   /// The following bytes are from another transport; see transport::baud(). Before begin(). With

@@ -10,6 +10,7 @@
 #include "core/bulk_kernels.hpp"
 #include "g4lidar/core/decode.hpp"
 #include "g4lidar/core/model.hpp"
+#include "g4lidar/core/sample_clock.hpp"
 #include "g4lidar/core/sensor_clock.hpp"
 #include "g4lidar/core/stream_parser.hpp"
 #include "g4lidar/core/zero_offset.hpp"
@@ -57,9 +58,14 @@ class timed_decoder {
   /// A scan begins, or continues after an interruption. `sample_rate_hz` is nominal.
   void begin(std::uint32_t sample_rate_hz) noexcept {
     clock_.reset(expected_rate_of(*which_, sample_rate_hz));
+    counted_.reset();
     angles_ = {};
     last_packet_ns_ = 0;
   }
+
+  /// From the next begin() on times are counted from samples at this rate, as those of raw bytes; 0: they are
+  /// estimated. Without arrivals lost samples are not known.
+  void count_times(std::uint32_t sample_rate_hz) noexcept { counted_hz_ = sample_rate_hz; }
 
   /// Writes the points of a packet to the front of `out`. `behind` bytes behind it were read in the
   /// same read, at `read_ns`. `lost` is set if samples were lost without skipped bytes.
@@ -68,7 +74,7 @@ class timed_decoder {
     const std::int64_t arrival_ns =
         detail::saturating_sub(read_ns, gathered_for_ns(packet, behind));
     decoded found = without_points(packet, revolutions_.count(packet));
-    const packet_times times = clock_.stamp(found, arrival_ns);
+    const packet_times times = is_counted() ? packet_times{} : clock_.stamp(found, arrival_ns);
     const bool fits = angles_.fits(packet);
     if (times.lost > 0) angles_.lost();  // or the angles are wrong: the next packet decides
     if (!found.suspect) {
@@ -77,6 +83,7 @@ class timed_decoder {
       zero_.add_to(out.first(packet.sample_count()));
       if (!fits) mark_unlikely(out.first(packet.sample_count()));
     }
+    if (is_counted()) count(found, arrival_ns, out);
     samples_lost_ += static_cast<std::uint64_t>(times.lost);
     lost = times.lost > 0;
     if (last_packet_ns_ != 0) {
@@ -104,6 +111,24 @@ class timed_decoder {
   [[nodiscard]] std::int64_t largest_gap_ns() const noexcept { return largest_gap_ns_; }
 
  private:
+  [[nodiscard]] bool is_counted() const noexcept { return counted_hz_ > 0; }
+  /// The samples of a suspect packet were measured, too. A packet arrives one period after its last sample.
+  void count(const decoded& found, std::int64_t arrival_ns,
+             std::span<point, max_samples> out) noexcept {
+    if (!counted_ && found.suspect) return;
+    if (!counted_) {
+      sample_clock packet(counted_hz_);
+      packet.tick(found.sample_count);
+      counted_from_ns_ = detail::saturating_sub(arrival_ns, packet.now_ns());
+      counted_.emplace(counted_hz_);
+    }
+    if (found.suspect) return counted_->tick(found.sample_count);
+    for (point& each : out.first(found.points.size())) {
+      each.time_ns = detail::wrapping_add(counted_from_ns_, counted_->now_ns());
+      counted_->tick();
+    }
+  }
+
   /// Bytes that accumulated for longer were not read in time.
   static constexpr std::int64_t longest_batch_ns = 50'000'000;
 
@@ -128,6 +153,9 @@ class timed_decoder {
   std::int64_t byte_ns_ = 0;           // the time of a byte
   zero_offset zero_;
   sensor_clock clock_;
+  std::uint32_t counted_hz_ = 0;         // 0: clock_ has the times
+  std::optional<sample_clock> counted_;  // from the first point on
+  std::int64_t counted_from_ns_ = 0;
   revolution_counter revolutions_;
   angle_check angles_;
   std::int64_t last_packet_ns_ = 0;  // since begin()

@@ -124,7 +124,8 @@ std::string document_rows(bool are_fixed) {
     made.append("| `").append(each.node_name.empty() ? each.name : each.node_name);
     made.append("` | ").append(types.at(node_type(each))).append(" | ");
     made.append(usual.empty() ? "" : "`" + usual + "`").append(" | ").append(description_of(each));
-    if (!constraints.empty() && each.name != "model") made.append(" (").append(constraints).append(")");
+    if (!constraints.empty() && each.name != "model")
+      made.append(" (").append(constraints).append(")");
     made += " |\n";
   }
   return made;

@@ -4,6 +4,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <array>
@@ -15,10 +16,13 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <thread>
+#include <utility>
 #include <vector>
 
 #include "g4lidar/lidar.hpp"
 #include "g4lidar/recording/writer.hpp"
+#include "g4lidar/sim/scanner.hpp"
 #include "recorded_run.hpp"
 #include "support/packet_maker.hpp"
 
@@ -112,6 +116,92 @@ TEST_F(RawBytes, ReturnTheirTransportOnceAndDiscardWrites) {
   const auto second = from->connect();
   ASSERT_FALSE(second);
   EXPECT_EQ(second.error(), problem::end_of_input);
+}
+
+/// What lidar::open() makes of bytes.
+std::vector<point> points_of(const lidar_options& options) {
+  std::vector<point> all;
+  auto device = lidar::open(options);
+  EXPECT_TRUE(device && device->start());
+  if (!device) return all;
+  while (const auto some = device->next_points(std::chrono::seconds(10)))
+    all.insert(all.end(), some->begin(), some->end());
+  return all;
+}
+
+// Of two other packets in turn the first half is lost.
+TEST_F(RawBytes, OnlyAPacketWithWrongAnglesIsUnlikely) {
+  sim::scanner scanner(sim::built_in_world(), {});
+  std::string raw;
+  std::vector<float> expected;
+  for (int i = 0; i < 400; ++i) {
+    const sim::sent_packet packet = scanner.next();
+    bytes data = packet.data;
+    const packet_view view = *packet_view::from(data);
+    made::packet turned(view.ct(), (view.first_angle_64ths() + 640) % turn_64ths,
+                        (view.last_angle_64ths() + 640) % turn_64ths, view.sample_count());
+    for (std::size_t k = 0; k < view.sample_count(); ++k) {
+      turned.set(k, view.sample(k));
+      if (i == 200) expected.push_back(static_cast<float>(view.sample(k)) * 0.25F);
+    }
+    if (i == 200) data = turned.data();
+    if (i == 220 || i == 221) data = data.last(data.size() / 2);
+    raw.append(data.begin(), data.end());
+  }
+  ASSERT_EQ(expected.size(), 40U);
+  std::ofstream(path_, std::ios::binary) << raw;
+  std::vector<float> unlikely_mm;
+  for (const point& each : points_of({.device = path_})) {
+    if ((each.flags & point_flags::unlikely) != point_flags::none)
+      unlikely_mm.push_back(each.range_mm);
+  }
+  EXPECT_EQ(unlikely_mm, expected);
+}
+
+std::string suspect_packet() {
+  const made::packet made(0, 20 * 64, 19 * 64, std::vector<std::uint16_t>(2, 4000));
+  return {made.data().begin(), made.data().end()};
+}
+
+// A suspect packet before the first point takes no time, and one behind it that of its 2 samples.
+TEST_F(RawBytes, TimesOfPointsAreCountedExactly_AlsoInARecordingOfThem) {
+  std::string all = suspect_packet() + packet_of(9) + suspect_packet();
+  for (int i = 0; i < 300; ++i) all += packet_of(30);
+  std::ofstream(path_, std::ios::binary) << all;
+  for (const std::uint32_t rate_hz : {9000U, 7U, 123'457U}) {
+    const temporary_path copy;
+    {
+      auto writer = recording_writer::create(copy.text());
+      ASSERT_TRUE(writer);
+      auto device = lidar::open(path_, {.raw_sample_rate_hz = rate_hz, .wrap = [&](auto from) {
+                                          return recorded(std::move(from), *writer);
+                                        }});
+      ASSERT_TRUE(device && device->start());
+      while (device->next_points(std::chrono::seconds(10))) continue;
+    }
+    const std::vector<point> played = points_of({.device = path_, .raw_sample_rate_hz = rate_hz});
+    ASSERT_EQ(played.size(), 9U + 9000U);
+    for (std::size_t i = 0; i < played.size(); ++i) {
+      const auto sample = static_cast<std::int64_t>(i < 9 ? i : i + 2);
+      ASSERT_EQ(played[i].time_ns, second_ns + sample * second_ns / rate_hz) << i;
+    }
+    EXPECT_EQ(points_of({.device = copy.text()}), played) << rate_hz;
+  }
+}
+
+TEST_F(RawBytes, OfAPipe_HaveCountedTimesIfTheyAreWanted) {
+  std::string all;
+  for (int i = 0; i < 100; ++i) all += packet_of(30);
+  ASSERT_EQ(::mkfifo(path_.c_str(), 0600), 0);
+  std::thread writer([&] { std::ofstream(path_, std::ios::binary) << all; });
+  const std::vector<point> read = points_of(
+      {.device = path_, .model = &g4_model, .raw_sample_rate_hz = 7, .counts_times = true});
+  writer.join();
+  ASSERT_EQ(read.size(), 3000U);
+  for (std::size_t i = 0; i < read.size(); ++i) {
+    const auto since_ns = static_cast<std::int64_t>(i) * second_ns / 7;
+    ASSERT_EQ(read[i].time_ns - read[0].time_ns, since_ns) << i;
+  }
 }
 
 // A file without a packet: no scan ends the call.

@@ -10,7 +10,6 @@
 #include <variant>
 #include <vector>
 
-#include "export/byte_points.hpp"
 #include "export/digits.hpp"
 #include "export/pcd.hpp"
 #include "export/point_file.hpp"
@@ -111,10 +110,6 @@ TEST(ExtremeWriters, Bytes) {
       [&](test::dice& random) {
         std::vector<std::uint8_t> data(random.below(400));
         for (std::uint8_t& each : data) each = random.structural_byte();
-        const auto writer = make_point_writer({});
-        byte_points points(*writer, sink, any<std::uint32_t>(random));
-        points.take(data);
-        points.finish();
         protocol_log log({.lines = any<std::uint64_t>(random)}, time_shift(time_style::delta, 0),
                          sink);
         log.from_device(data, any<std::int64_t>(random));

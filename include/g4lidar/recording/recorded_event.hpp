@@ -53,6 +53,8 @@ struct recorded_event {
   stamped_odometry odometry{};          ///< Of `odometry`.
   /// What is added to each angle, of `begun`, `held`, `cut` and `state`; nothing: not known.
   std::optional<zero_angle> zero{};
+  /// Of `begun` and `state`: the times of points are counted from samples at `sample_rate_hz`, as those of raw bytes.
+  bool counts_times = false;
 };
 
 /// The names in tools and documents. Valid forever.

@@ -9,17 +9,6 @@
 namespace g4lidar {
 namespace {
 
-/// For a recording of raw bytes: what is added to the angles of the points that follow.
-recorded_event event_of(recorded_event::kind what, std::int64_t now_ns, connection& from,
-                        std::uint32_t sample_rate_hz, std::optional<zero_angle> zero) {
-  return {.what = what,
-          .baud = from.on().baud(),
-          .sample_rate_hz = sample_rate_hz,
-          .time_ns = now_ns,
-          .name = from.name(),
-          .zero = zero};
-}
-
 /// Whether the event happened when this much of the read had been processed.
 bool is_here(const recorded_event& what, const event_reader& input) noexcept {
   switch (what.what) {
@@ -46,7 +35,9 @@ bool is_here(const recorded_event& what, const event_reader& input) noexcept {
 replay_player::replay_player(parts& of, const lidar_options& options)
     : scan_source(of, options),
       stated_{.identity = identity_reader(*options.model, true)},
-      sample_rate_hz_(first_rate_hz(*options.model)) {}
+      sample_rate_hz_(first_rate_hz(*options.model)),
+      counted_hz_(options.raw_sample_rate_hz.value_or(sample_rate_hz_)),
+      counts_times_(options.counts_times) {}
 
 result<void> replay_player::open() {
   if (auto opened = connection_.open(); !opened) return opened;
@@ -56,6 +47,9 @@ result<void> replay_player::open() {
   if (source_ == nullptr) {
     stated_.recorder = hook;
     source_ = file_;  // the seams of raw bytes in a loop
+    counts_times_ = counts_times_ || file_ != nullptr;
+    if (counts_times_) sample_rate_hz_ = counted_hz_;
+    follow_times(counts_times_);
   }
   if (file_ != nullptr) file_->controls().when_moved([this] { follow_seek(); });
   receiver_.reset(0, 0, now_ns());
@@ -74,10 +68,7 @@ result<void> replay_player::open() {
 result<void> replay_player::start() {
   if (stage_ != stage::idle) return can_read();
   stage_ = stage::playing;
-  if (const auto zero = pipeline_.zero().angle()) {  // the user knows it
-    stated_.record(
-        event_of(recorded_event::kind::begun, now_ns(), connection_, sample_rate_hz_, zero));
-  }
+  if (counts_times_ || pipeline_.zero().angle()) record(recorded_event::kind::begun);
   spin_up_.forget();
   begin_spin_up();
   return {};
@@ -209,10 +200,7 @@ bool replay_player::parse_bytes() {
         if (is_other || answers) recognised_.set_device(who.model, 0);
         if (is_other) report(lidar_event::kind::other_number);
       }
-      if (const auto zero = pipeline_.zero().angle(); zero != stated_.recorded_zero) {
-        stated_.record(
-            event_of(recorded_event::kind::state, now_ns(), connection_, sample_rate_hz_, zero));
-      }
+      if (pipeline_.zero().angle() != stated_.recorded_zero) record(recorded_event::kind::state);
       const bool makes_points = pipeline_.delivers() && std::holds_alternative<packet_view>(*found);
       const bool is_first = makes_points && !std::exchange(stated_.is_zero_judged, true);
       if (is_first && pipeline_.decoder().lacks_zero()) report(lidar_event::kind::no_zero_angle);
@@ -223,10 +211,22 @@ bool replay_player::parse_bytes() {
   return true;
 }
 
-/// What the bytes state of their lidar, and what they lack: once, with the first packet that makes points.
-void replay_player::statements::record(recorded_event made) {
-  recorded_zero = made.zero;
-  if (recorder != nullptr) recorder->event(made);
+/// For a recording of raw bytes: how the points that follow are made.
+void replay_player::record(recorded_event::kind what) {
+  stated_.recorded_zero = pipeline_.zero().angle();
+  if (stated_.recorder == nullptr) return;
+  stated_.recorder->event({.what = what,
+                           .baud = connection_.on().baud(),
+                           .sample_rate_hz = sample_rate_hz_,
+                           .time_ns = now_ns(),
+                           .name = connection_.name(),
+                           .zero = stated_.recorded_zero,
+                           .counts_times = counts_times_});
+}
+
+void replay_player::follow_times(bool counts) noexcept {
+  counts_times_ = counts;
+  pipeline_.count_times(counts ? sample_rate_hz_ : 0);
 }
 
 void replay_player::follow_delivery() {
@@ -286,6 +286,7 @@ void replay_player::play(const recorded_event& what) {
       follow_samples();  // here the recorded driver did
       delivers_ = what.delivers;
       sample_rate_hz_ = what.sample_rate_hz;
+      follow_times(what.counts_times);
       return pipeline_.begin(sample_rate_hz_);
     case recorded_event::kind::held:
       delivers_ = false;
@@ -308,8 +309,9 @@ void replay_player::play(const recorded_event& what) {
   pipeline_.follow(what.baud);
   delivers_ = what.delivers;
   const std::uint32_t rate = what.sample_rate_hz;
-  if (rate == 0 || rate == sample_rate_hz_) return;
+  if (rate == 0 || (rate == sample_rate_hz_ && what.counts_times == counts_times_)) return;
   sample_rate_hz_ = rate;
+  follow_times(what.counts_times);
   pipeline_.begin(rate);
 }
 

@@ -63,7 +63,6 @@ class replay_player final : public scan_source {
     std::optional<zero_angle> recorded_zero{};  ///< By `recorder`.
     bool is_zero_judged = false;                ///< Whether it is known when points begin.
 
-    void record(recorded_event made);
     void follow(const model& which) noexcept {
       identity = identity_reader(which, true);
       is_zero_judged = false;
@@ -90,6 +89,8 @@ class replay_player final : public scan_source {
   void report_long_pause();
   [[nodiscard]] bool play_events(bool all);
   void play(const recorded_event& what);
+  void record(recorded_event::kind what);
+  void follow_times(bool counts) noexcept;
 
   played_file* file_ = nullptr;              // null: a pipe
   recorded_event_source* source_ = nullptr;  // of a file
@@ -102,6 +103,8 @@ class replay_player final : public scan_source {
   bool is_released_ = false;
   statements stated_;
   std::uint32_t sample_rate_hz_;
+  std::uint32_t counted_hz_;  // of raw bytes
+  bool counts_times_;         // of points, from samples
   losses lost_;
 };
 

@@ -31,6 +31,7 @@ string reason
 string name
 bool has_zero_angle    # whether the next one is known; older recordings end before it
 int32 zero_angle_cdeg  # what is added to each angle, in 0.01 degrees
+bool counts_times      # whether times of points are counted from samples; older recordings end before it
 )";
 
 struct schema_words {

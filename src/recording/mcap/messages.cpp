@@ -56,6 +56,7 @@ void put_event(record_text& out, const recorded_event& what, std::int64_t wall_a
   message.put(what.name.substr(0, longest_name));
   message.put(std::uint8_t{what.zero.has_value()});
   message.put(what.zero.value_or(zero_angle{}).cdeg);
+  message.put(std::uint8_t{what.counts_times});
 }
 
 std::optional<recorded_bytes> recorded_bytes_from(bytes message) noexcept {
@@ -94,6 +95,7 @@ std::optional<recorded_event> event_from(bytes message) noexcept {
     const auto cdeg = static_cast<std::int32_t>(fields.take<std::uint32_t>());
     if (!fields.is_good()) return std::nullopt;
     if (has_zero && cdeg >= -turn_cdeg && cdeg <= turn_cdeg) made.zero = zero_angle{cdeg};
+    made.counts_times = !fields.is_at_end() && fields.take<std::uint8_t>() != 0;
   }
   if (made.sample_rate_hz > max_sample_rate_hz) return std::nullopt;
   if (made.what == recorded_event::kind::begun && made.sample_rate_hz == 0) return std::nullopt;
@@ -148,6 +150,7 @@ void transport_state::take(const recorded_event& what) noexcept {
       [[fallthrough]];
     case begun:
       sample_rate_hz = what.sample_rate_hz;
+      counts_times = what.counts_times;
       delivers = what.delivers;
       break;
     case held:
@@ -171,6 +174,7 @@ recorded_event transport_state::as_event(std::int64_t time_ns) const noexcept {
   made.sample_rate_hz = sample_rate_hz;
   made.name = transport_name();
   made.zero = zero;
+  made.counts_times = counts_times;
   return made;
 }
 

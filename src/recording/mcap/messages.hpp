@@ -47,6 +47,7 @@ struct transport_state {
   std::array<char, longest_name> name{};
   std::uint8_t name_size = 0;
   std::optional<zero_angle> zero{};
+  bool counts_times = false;
 
   void take(const recorded_event& what) noexcept;
   [[nodiscard]] recorded_event as_event(std::int64_t time_ns) const noexcept;

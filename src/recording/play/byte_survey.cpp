@@ -58,7 +58,8 @@ std::optional<error> refusal_of(const stream_survey& seen, std::string_view titl
   }
   if (seen.text() == text_kind::none) return std::nullopt;
   return error(task::opening, problem::bad_file,
-               std::string(title).append(": ").append(seen.finding()));
+               std::string(title).append(": ").append(seen.finding()), 0,
+               error_detail::known_bytes);
 }
 
 namespace {

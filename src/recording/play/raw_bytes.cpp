@@ -33,8 +33,13 @@ namespace {
 
 /// The time of the first bytes of a file; 0 would mean that it is not known.
 constexpr std::int64_t file_begin_ns = second_ns;
-/// Of bytes that belong to no packet.
+/// Of bytes that belong to no packet; of those of a pipe, whose points a ring can hold.
 constexpr std::size_t longest_piece = 16'384;
+
+/// A recording must be a file with a name; its bytes would be parsed as noise.
+tl::unexpected<error> a_recording(task doing) noexcept {
+  return failure(doing, problem::bad_file, "a recording in a pipe");
+}
 
 /// A pipe, a terminal or a device: bytes arrive when they can be read. Nothing answers.
 class pipe_transport final : public transport {
@@ -47,7 +52,11 @@ class pipe_transport final : public transport {
     stream_head head(steady_now_ns());
     std::array<std::uint8_t, 4096> memory;
     while (!head.is_complete(steady_now_ns())) {
-      if (is_cancelled && is_cancelled()) return failure(task::opening, problem::cancelled, name_);
+      if (is_cancelled && is_cancelled()) {
+        if (head.held().empty()) return failure(task::opening, problem::cancelled, name_);
+        head.finish();
+        break;
+      }
       if (!wait(POLLIN, std::min(steady_now_ns() + step_ns, head.due_ns()))) continue;
       const auto got = take(memory);
       if (got) {
@@ -58,6 +67,11 @@ class pipe_transport final : public transport {
       }
     }
     ahead_.assign(head.held().begin(), head.held().end());
+    if (begins_recording(ahead_)) return a_recording(task::opening);
+    stream_survey seen;
+    seen.received(ahead_);
+    seen.finish();
+    if (const auto why = refusal_of(seen, name_)) return tl::unexpected(*why);
     return head.found();
   }
 
@@ -65,11 +79,11 @@ class pipe_transport final : public transport {
                                       std::int64_t deadline_ns) noexcept override {
     if (woken_.exchange(false)) return failure(task::reading, problem::cancelled, name_);
     if (!has_ahead() && !end_ && !wait(POLLIN, deadline_ns)) return received{};
+    out = out.first(std::min(out.size(), longest_piece));
     const auto got = has_ahead() ? take_ahead(out) : take(out);
     if (!got) return tl::unexpected(got.error());
-    // A recording must be a file; in a pipe it would be parsed as noise.
     if (!std::exchange(has_begun_, true) && begins_recording(out.first(*got))) {
-      return failure(task::reading, problem::bad_file, "a recording in a pipe");
+      return a_recording(task::reading);
     }
     return received{*got, steady_now_ns()};
   }
@@ -225,7 +239,7 @@ class counted_items final : public item_source {
     while (const auto found = parser_.next(rest)) {
       const auto* const packet = std::get_if<packet_view>(&*found);
       if (packet == nullptr) continue;
-      count(packet->sample_count());
+      if (samples_ > 0 || !packet->is_suspect()) count(packet->sample_count());  // from a point on
       parsed_ = end_ - rest.size();
       return true;
     }
@@ -311,6 +325,10 @@ result<std::unique_ptr<connector>> open_raw_bytes(const std::string& name,
     return std::make_unique<pipe_connector>(std::move(port), about(*found));
   }
   const off_t at = std::max<off_t>(::lseek(fd.get(), 0, SEEK_CUR), 0);
+  std::array<std::uint8_t, 8> begin{};
+  const ssize_t begun =
+      uninterrupted([&] { return ::pread(fd.get(), begin.data(), begin.size(), at); });
+  if (begun > 0 && begins_recording(bytes(begin))) return a_recording(task::opening);
   recognised_model found{which};
   if (which == nullptr) {
     const stream_survey seen = surveyed_at(fd, at);

@@ -21,18 +21,21 @@ constexpr auto pulse_time = 100ms;
 constexpr auto flush_time = 50ms;
 constexpr std::uint64_t most_without_s = 10;
 
+/// Whether it is a file or a pipe.
+bool is_input(const std::string& source) {
+  const source_kind kind = kind_of_source(source);
+  return kind == source_kind::recording || kind == source_kind::raw_bytes;
+}
+
 class read_loop {
  public:
   read_loop(opened_source& source, const common_options& options, const read_sink& sink,
             output& out)
-      : lidar_(source.lidar()),
-        recording_(source.recording()),
-        options_(options),
-        sink_(sink),
-        out_(out) {}
+      : source_(source), options_(options), sink_(sink), out_(out) {}
 
   void run() {
-    while (!is_over()) {
+    // What was read of a pipe while it was opened is taken in any case.
+    for (bool has_begun = is_live_; !has_begun || !is_over(); has_begun = true) {
       const bool got = read();
       report_events(lidar_);
       if (ended_) return;
@@ -43,7 +46,7 @@ class read_loop {
         refuse_endless();
         wait();
       }
-      if (recording_ != nullptr) bar_.show(recording_->position());
+      if (source_.size() >= progress_bar::least_bytes) bar_.show(source_.position());
       if (sink_.pulse) sink_.pulse();
     }
   }
@@ -75,13 +78,14 @@ class read_loop {
     ended_ = took.error() == g4lidar::problem::end_of_input;
     if (ended_ || !took.error().is_fatal()) return false;
     report_events(lidar_);
+    if (!is_live_) throw failure_of(options_, took.error());
     throw failure(took.error(), true);
   }
 
   /// Packets come, and make no revolution: the command would wait for ever.
   void refuse_endless() {
     const bool goes_on = options_.count == 0 && records_ > 0;  // the head may turn again
-    if (!sink_.scan || recording_ != nullptr || options_.duration != 0ns || goes_on) return;
+    if (!sink_.scan || !is_live_ || options_.duration != 0ns || goes_on) return;
     const lidar_counts now = lidar_.counts();
     if (now.scans != whole_.scans || records_ != whole_.records)
       whole_ = {now.scans, records_, now.stream.points};
@@ -107,16 +111,16 @@ class read_loop {
     if (woken == wake::output_closed) out_.close_early();
   }
 
-  g4lidar::lidar& lidar_;
-  const recording_reader* recording_;
+  opened_source& source_;
+  g4lidar::lidar& lidar_ = source_.lidar();
   const common_options& options_;
   const read_sink& sink_;
   output& out_;
   time_limits limits_{options_.duration, options_.idle};
   clock::time_point flushed_ = clock::now();
   bool is_terminal_ = out_.is_terminal();
-  progress_bar bar_{recording_ == nullptr ? 0 : recording_->size(),
-                    sink_.with_bar && !is_terminal_};
+  progress_bar bar_{source_.size(), sink_.with_bar && !is_terminal_};
+  bool is_live_ = !is_input(options_.source);
   std::uint64_t records_ = 0;
   struct {
     std::uint64_t scans = 0;
@@ -126,12 +130,23 @@ class read_loop {
   bool ended_ = false;
 };
 
+/// What a signal, -d or --idle has left of the bytes of a file or a pipe.
+void take_rest(g4lidar::lidar& lidar, const read_sink& sink) {
+  if (sink.scan) {
+    if (const auto last = lidar.next_scan(0ms)) sink.scan(*last);
+    return;
+  }
+  while (const auto more = lidar.next_points(0ms)) sink.points(*more);
+}
+
 }  // namespace
 
 void report_events(g4lidar::lidar& lidar) {
   while (const auto event = lidar.next_event()) {
     const bool is_loss = event->what == lidar_event::kind::lost;
-    if (is_loss && event->reason == g4lidar::problem::end_of_input) continue;  // the end of a file
+    const bool is_of_file = event->reason == g4lidar::problem::end_of_input ||
+                            event->reason == g4lidar::problem::bad_file;
+    if (is_loss && is_of_file) continue;  // its end, or an error
     const g4lidar::model& which = *lidar.recognition().model;
     if (event->what == lidar_event::kind::no_zero_angle) {
       report_missing_zero(which);
@@ -150,6 +165,8 @@ void read_source(opened_source& source, const common_options& options, const rea
   value_of(lidar.start());
   read_loop(source, options, sink, out).run();
   static_cast<void>(lidar.stop());  // the data is valid even if stopping fails
+  const bool has_enough = sink.is_done && sink.is_done();
+  if (is_input(options.source) && !has_enough) take_rest(lidar, sink);
   report_events(lidar);
 }
 

@@ -8,7 +8,7 @@
 #include "export/svg.hpp"
 #include "io/output.hpp"
 #include "io/shape_files.hpp"
-#include "point_job.hpp"
+#include "output_form.hpp"
 
 namespace g4_tool {
 

@@ -5,6 +5,7 @@
 
 #include "cli/exit_code.hpp"
 #include "cli/logger.hpp"
+#include "io/input.hpp"
 #include "io/interrupt.hpp"
 
 namespace g4_tool {
@@ -19,8 +20,9 @@ sample_layout layout_with(sample_layout now, const point_lines& text) {
   return longest_range_mm(now) > longest_range_mm(quarter_mm) ? intensity_16 : intensity_10;
 }
 
-}  // namespace
-
+/// The model of the points in `in`: the one that `common` names, else a G4; with samples of another layout
+/// if the first line shows that the points have an intensity or flags that those of the model do not
+/// have. Reads ahead. Reports where no model is named and the G4 has to be taken for another lidar.
 g4lidar::model model_of_text(input& in, text_source form, const common_options& common) {
   const g4lidar::model* const named = common.expected.model;
   g4lidar::model made = named == nullptr ? g4_model : *named;
@@ -45,6 +47,8 @@ g4lidar::model model_of_text(input& in, text_source form, const common_options& 
   return made;
 }
 
+/// Reports the counts of the text `title`, whose points are those of a lidar like `which`. Throws a failure if it has
+/// no points, or values in later lines that the first one does not announce.
 void report_text(const text_points& text, const std::string& title, const g4lidar::model& which) {
   if (!text.unexpected().empty()) {
     throw failure(
@@ -67,6 +71,30 @@ void report_text(const text_points& text, const std::string& title, const g4lida
   logger::info(fmt::format("{}, {} without one{}\n", counted(text.points(), "point"),
                            counted(text.bad_lines(), "line"),
                            first_bad.empty() ? "" : ": " + first_bad));
+}
+
+}  // namespace
+
+int convert_text(const point_options& options, text_source form, g4lidar::frame in) {
+  const common_options& common = *options.common;
+  input from(path_of_source(common.source), "Give csv or jsonl as g4-dump writes it.");
+  point_output to(options, time_origin::written);
+  const g4lidar::model which = model_of_text(from, form, common);
+  to.open(from.is_file());
+  to.use_model(which);
+  text_points way(form, in, to.writer(), to.out(), which);
+  from.pump(to.out(),
+            {.take =
+                 [&](std::span<const std::uint8_t> got) {
+                   way.take({reinterpret_cast<const char*>(got.data()), got.size()});
+                 },
+             .is_done = [&] { return to.writer().is_done(); }},
+            common);
+  if (!to.writer().is_done()) way.finish();
+  report_text(way, from.title(), which);
+  if (way.points() > 0) to.commit();
+  to.report();
+  return exit_code_now();
 }
 
 }  // namespace g4_tool

@@ -1,24 +1,14 @@
 // SPDX-License-Identifier: MIT
-// Points as text: which columns they have, and what is reported of them.
+// Points as text, which are converted to another form.
 #pragma once
 
-#include <string>
-
-#include "cli/common_options.hpp"
 #include "export/text_points.hpp"
-#include "g4lidar/core/model.hpp"
-#include "io/input.hpp"
+#include "point_output.hpp"
 
 namespace g4_tool {
 
-/// The model of the points in `in`: the one that `common` names, else a G4; with samples of another layout
-/// if the first line shows that the points have an intensity or flags that those of the model do not
-/// have. Reads ahead. Reports where no model is named and the G4 has to be taken for another lidar.
-[[nodiscard]] g4lidar::model model_of_text(input& in, text_source form,
-                                           const common_options& common);
-
-/// Reports the counts of the text `title`, whose points are those of a lidar like `which`. Throws a failure if it has
-/// no points, or values in later lines that the first one does not announce.
-void report_text(const text_points& text, const std::string& title, const g4lidar::model& which);
+/// Points in `form`, with angles in frame `in`, to the output: not of a lidar, which only its owner can name. Returns the
+/// exit code; throws a failure or a bad_value.
+[[nodiscard]] int convert_text(const point_options& options, text_source form, g4lidar::frame in);
 
 }  // namespace g4_tool

@@ -22,9 +22,10 @@
 #include "io/input.hpp"
 #include "io/interrupt.hpp"
 #include "io/output.hpp"
-#include "io/point_job.hpp"
+#include "io/point_run.hpp"
 #include "io/read_loop.hpp"
 #include "io/recorder.hpp"
+#include "io/text_input.hpp"
 #include "verbs/verbs.hpp"
 
 namespace g4_tool {
@@ -46,11 +47,12 @@ enum class file_form : unsigned char {
 };
 
 struct convert_options {
-  point_job points;               ///< Its source is IN, its output OUT; also for bytes.
+  point_options points;           ///< Its source is IN, its output OUT; also for bytes.
   std::optional<file_form> from;  ///< Nothing: by its contents and name.
   std::optional<file_form> to;    ///< Nothing: by its name.
-  bool shapes = false;            ///< An option for points was given.
-  recording_options made;         ///< Of a written recording.
+  g4lidar::frame text_frame = g4lidar::frame::vendor;  ///< Of the angles in csv and jsonl.
+  bool shapes = false;                                 ///< An option for points was given.
+  recording_options made;                              ///< Of a written recording.
 
   [[nodiscard]] const std::string& in() const noexcept { return points.common->source; }
   [[nodiscard]] const std::string& out() const noexcept { return points.common->output; }
@@ -152,17 +154,18 @@ int to_points(convert_options options, file_form from, file_form to) {
   using enum point_file_format;
   static const std::map<file_form, point_file_format> point_files{
       {file_form::npy, npy}, {file_form::npz, npz}, {file_form::ply, ply}, {file_form::xyz, xyz}};
-  point_job& job = options.points;
-  if (from == file_form::csv) job.text = text_source::csv;
-  if (from == file_form::jsonl) job.text = text_source::jsonl;
-  if (to == file_form::pcd) job.file = scan_file::pcd;
-  if (const auto at = point_files.find(to); at != point_files.end()) job.point_file = at->second;
-  if (to == file_form::tum) job.log = slam_log::tum;
-  if (to == file_form::carmen) job.log = slam_log::carmen;
+  point_options& job = options.points;
+  output_form& form = job.form;
+  if (to == file_form::pcd) form.file = scan_file::pcd;
+  if (const auto at = point_files.find(to); at != point_files.end()) form.point_file = at->second;
+  if (to == file_form::tum) form.log = slam_log::tum;
+  if (to == file_form::carmen) form.log = slam_log::carmen;
   job.common->marks.near = options.made.near;
-  job.partial = to != file_form::pcd && job.log == slam_log::none;
-  job.style.format = to == file_form::csv ? text_format::csv : text_format::jsonl;
-  return run(job);
+  job.partial = to != file_form::pcd && form.log == slam_log::none;
+  form.style.format = to == file_form::csv ? text_format::csv : text_format::jsonl;
+  if (from < file_form::csv) return run(job);
+  const bool is_csv = from == file_form::csv;
+  return convert_text(job, is_csv ? text_source::csv : text_source::jsonl, options.text_frame);
 }
 
 void write_bytes(output& out, const std::vector<std::uint8_t>& data) {
@@ -282,7 +285,7 @@ replaces an existing file, but never IN. ^C ends the command; what was converted
 option_rows form_rows(convert_options& options) {
   const choices<file_form> inputs(forms().begin(), forms().begin() + 4);
   const choices<file_form> outputs(forms().begin(), forms().end() - 2);
-  point_job& job = options.points;
+  point_options& job = options.points;
   playback_options& range = job.source.playback;
   return {
       choice_row("--from-format", "Format of IN (by its contents and name)", options.from, inputs),
@@ -290,12 +293,13 @@ option_rows form_rows(convert_options& options) {
       force_row(),
       moment_row("--from", "Begin at this time of IN: 10s", range.from_ns),
       moment_row("--to", "End at this time of IN: 40s", range.to_ns),
-      value_row("--ascii", "", "Write pcd as text", job.data,
+      value_row("--ascii", "", "Write pcd as text", job.form.data,
                 [](const std::string&) { return pcd_data::ascii; }),
       row_of("model", job.common->expected),
       row_of("zero_angle", job.common->expected),
       row_of("raw_sample_rate_hz", job.source.raw_sample_rate_hz),
-      frame_row("--from-frame", "Frame of the angles in csv and jsonl (vendor)", job.text_frame),
+      frame_row("--from-frame", "Frame of the angles in csv and jsonl (vendor)",
+                options.text_frame),
       compress_row(options.made.packed)};
 }
 
@@ -303,7 +307,7 @@ option_rows form_rows(convert_options& options) {
 option_rows point_rows(convert_options& options) {
   common_options& common = *options.points.common;
   option_rows rows = joined(flag_row("--scans", "A record for each revolution, in csv and jsonl",
-                                     options.points.style.scans),
+                                     options.points.form.style.scans),
                             filter_rows(common), shape_rows(common),
                             rows_of("Motion of the robot", {"deskew"}, common.deskew));
   for (option_row& row : rows) {
@@ -318,7 +322,7 @@ verb make_convert_verb() {
   const auto options = std::make_shared<convert_options>();
   common_options& common = *options->points.common;
   options->points.whole_file = true;
-  options->points.style = {};
+  options->points.form.style = {};
   return {
       .name = "convert",
       .summary = "Convert recordings, raw bytes and points",

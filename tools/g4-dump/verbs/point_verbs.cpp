@@ -7,7 +7,7 @@
 #include <tuple>
 #include <utility>
 
-#include "io/point_job.hpp"
+#include "io/point_run.hpp"
 #include "verbs/verbs.hpp"
 
 namespace g4_tool {
@@ -108,7 +108,7 @@ are written revolution by revolution.)";
 }  // namespace
 
 verb make_dump_verb() {
-  const auto job = std::make_shared<point_job>();
+  const auto job = std::make_shared<point_options>();
   common_options& common = *job->common;
   const auto refuse_pcd = [](const std::string& word) {
     if (word == "pcd") throw bad_value("'pcd' is a format of revolutions: use g4-dump scan");
@@ -116,10 +116,11 @@ verb make_dump_verb() {
   return {.name = "dump",
           .summary = "Print points (the default command)",
           .arguments = {source_argument(common)},
-          .options = joined(output_rows(common), checked(format_row(job->style.format), refuse_pcd),
-                            row_of("raw_sample_rate_hz", job->source.raw_sample_rate_hz),
-                            ending_rows(common), filter_rows(common), near_row(common.marks.near),
-                            shape_rows(common), device_rows(common)),
+          .options =
+              joined(output_rows(common), checked(format_row(job->form.style.format), refuse_pcd),
+                     row_of("raw_sample_rate_hz", job->source.raw_sample_rate_hz),
+                     ending_rows(common), filter_rows(common), near_row(common.marks.near),
+                     shape_rows(common), device_rows(common)),
           .details = fmt::format("{}\n\n{}\n\n{}", point_columns, shape_text, ending_text),
           .examples = {{"g4-dump", "Print the points of the only lidar"},
                        {"g4-dump -n 1000 -f csv -o points.csv", "Write 1000 points to a csv file"},
@@ -131,10 +132,10 @@ verb make_dump_verb() {
 }
 
 verb make_scan_verb() {
-  const auto job = std::make_shared<point_job>();
-  job->style.scans = true;
+  const auto job = std::make_shared<point_options>();
+  job->form.style.scans = true;
   common_options& common = *job->common;
-  option_row format = format_row(job->style.format);
+  option_row format = format_row(job->form.style.format);
   const choices<std::pair<scan_file, text_format>> forms{
       {"csv", {scan_file::none, text_format::csv}},
       {"jsonl", {scan_file::none, text_format::jsonl}},
@@ -143,7 +144,7 @@ verb make_scan_verb() {
       {"text", {scan_file::none, text_format::text}}};
   format.value = words_of(forms, "|");
   format.take = [into = job.get(), known = forms](const std::string& word) {
-    std::tie(into->file, into->style.format) = choice_of(word, known);
+    std::tie(into->form.file, into->form.style.format) = choice_of(word, known);
   };
   return {
       .name = "scan",
@@ -151,10 +152,10 @@ verb make_scan_verb() {
       .arguments = {source_argument(common)},
       .options = joined(
           output_rows(common), format,
-          number_row("--grid", "N", "Write N ranges at equal angles, no points", job->bins,
+          number_row("--grid", "N", "Write N ranges at equal angles, no points", job->form.bins,
                      std::size_t{1}, std::size_t{65'536}),
           flag_row("--partial", "Write pieces of revolutions, too", job->partial),
-          choice_row("--pcd-data", "Data of pcd files (binary)", job->data,
+          choice_row("--pcd-data", "Data of pcd files (binary)", job->form.data,
                      choices<pcd_data>{{"binary", pcd_data::binary}, {"ascii", pcd_data::ascii}}),
           row_of("raw_sample_rate_hz", job->source.raw_sample_rate_hz), ending_rows(common),
           filter_rows(common), near_row(common.marks.near), grid_rows(common.grid),
@@ -172,8 +173,8 @@ verb make_scan_verb() {
 }
 
 verb make_decode_verb() {
-  const auto job = std::make_shared<point_job>();
-  job->style = {.format = text_format::csv};
+  const auto job = std::make_shared<point_options>();
+  job->form.style = {.format = text_format::csv};
   job->partial = job->whole_file = true;
   job->common->source = "-";
   common_options& common = *job->common;
@@ -187,8 +188,8 @@ verb make_decode_verb() {
           .summary = "Print the points of a file (dump with other defaults)",
           .arguments = {file},
           .options =
-              joined(output_rows(common), format_row(job->style.format, "Output format (csv)"),
-                     flag_row("--scans", "A record for each revolution", job->style.scans),
+              joined(output_rows(common), format_row(job->form.style.format, "Output format (csv)"),
+                     flag_row("--scans", "A record for each revolution", job->form.style.scans),
                      flag_row("--valid", "Leave out points without a return", job->returns_only),
                      row_of("model", common.expected), row_of("zero_angle", common.expected),
                      row_of("raw_sample_rate_hz", job->source.raw_sample_rate_hz),

@@ -10,7 +10,7 @@
 #include "cli/logger.hpp"
 #include "io/input.hpp"
 #include "io/interrupt.hpp"
-#include "io/point_job.hpp"
+#include "io/point_run.hpp"
 #include "io/recorder.hpp"
 #include "verbs/verbs.hpp"
 
@@ -29,7 +29,7 @@ is compared. Points that another version of g4-dump computed are not compared. O
 several files, the bytes of each can be verified.)";
 
 struct replay_verb_options {
-  point_job job;
+  point_options job;
   bool verify = false;
 };
 
@@ -104,7 +104,7 @@ int run(const replay_verb_options& options) {
 
 verb make_replay_verb() {
   const auto options = std::make_shared<replay_verb_options>();
-  point_job& job = options->job;
+  point_options& job = options->job;
   common_options& common = *job.common;
   playback_options& played = job.source.playback;
   played.speed = 1.0;
@@ -117,8 +117,8 @@ verb make_replay_verb() {
       .summary = "Play a recording at its own speed or another, or verify it",
       .arguments = {file_argument("FILE", "A recording", common.source, completion::input)},
       .options =
-          joined(output_rows(common), format_row(job.style.format),
-                 flag_row("--scans", "Whole revolutions, not points", job.style.scans),
+          joined(output_rows(common), format_row(job.form.style.format),
+                 flag_row("--scans", "Whole revolutions, not points", job.form.style.scans),
                  value_row("--playback-speed", "1|max|FACTOR",
                            "1: as recorded, 0.5: half as fast (1)", played.speed,
                            [](const std::string& word) {

@@ -44,6 +44,13 @@ std::string baud_question() {
 
 }  // namespace
 
+failure not_opened(const std::string& title, int error, const std::string& what_to_give) {
+  return {exit_code::bad_file,
+          error == EISDIR ? title + " is a directory. " + what_to_give
+                          : fmt::format("cannot open {}: {}. {}", title, std::strerror(error),
+                                        advice_on(error, what_to_give))};
+}
+
 input::input(const std::string& name, const std::string& what_to_give) {
   add_input(name);
   if (name == "-") {
@@ -54,17 +61,13 @@ input::input(const std::string& name, const std::string& what_to_give) {
   } else {
     title_ = in_quotes(name);
     fd_ = open_file(name, O_RDONLY);
-    if (fd_ < 0) {
-      throw failure(exit_code::bad_file,
-                    fmt::format("cannot open {}: {}. {}", title_, std::strerror(errno),
-                                advice_on(errno, what_to_give)));
-    }
+    if (fd_ < 0) throw not_opened(title_, errno, what_to_give);
   }
   struct stat status{};
   if (::fstat(fd_, &status) != 0) return;
   if (S_ISDIR(status.st_mode)) {
     if (fd_ != 0) ::close(fd_);
-    throw failure(exit_code::bad_file, title_ + " is a directory. " + what_to_give);
+    throw not_opened(title_, EISDIR, what_to_give);
   }
   is_file_ = S_ISREG(status.st_mode);
   if (is_file_) size_ = static_cast<std::uint64_t>(status.st_size);
@@ -236,6 +239,13 @@ std::vector<std::uint8_t> beginning_of(const std::string& path) {
   return first;
 }
 
+failure not_packets(std::string_view found) {
+  return {exit_code::bad_file,
+          fmt::format("{} Give raw bytes from the lidar's port, or use g4-dump convert for csv and "
+                      "jsonl.",
+                      found)};
+}
+
 failure without_packets(const stream_counts& counts, std::uint64_t bytes,
                         std::span<const std::uint8_t> beginning, const std::string& title) {
   const auto bad = [](const std::string& why) { return failure(exit_code::bad_file, why); };
@@ -252,13 +262,8 @@ failure without_packets(const stream_counts& counts, std::uint64_t bytes,
                                   fmt::format("{}, packets with samples of {} bytes", title, size),
                                   0, g4lidar::error_detail::other_samples));
   }
-  if (const std::string known = g4lidar::what_is(beginning); !known.empty()) {
-    const bool is_plain = known.find("not the packets") != std::string::npos;
-    return bad(fmt::format("{}. {}{}", text, known,
-                           is_plain ? " Give raw bytes from the lidar's port, or use g4-dump "
-                                      "convert for csv and jsonl."
-                                    : ""));
-  }
+  if (const std::string known = g4lidar::what_is(beginning); !known.empty())
+    return not_packets(fmt::format("{}. {}", text, known));
   if (found == diagnosis::unknown_bytes) {
     return bad(fmt::format("{}. {} Give raw bytes from the lidar's port.", text, baud_question()));
   }

@@ -10,6 +10,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "cli/common_options.hpp"
@@ -19,6 +20,7 @@
 #include "g4lidar/recording/stream_head.hpp"
 #include "interrupt.hpp"
 #include "output.hpp"
+#include "source.hpp"
 
 namespace g4_tool {
 
@@ -28,6 +30,10 @@ struct byte_sink {
   std::function<bool()> is_done{};  ///< If set: called after each piece.
   bool with_bar = true;             ///< Shows the progress through a file.
 };
+
+/// The failure of a file that could not be opened, by its errno: why, and what to do.
+[[nodiscard]] failure not_opened(const std::string& title, int error,
+                                 const std::string& what_to_give);
 
 /// An input that is read once, from its beginning to its end. Owns its descriptor.
 class input {
@@ -92,10 +98,11 @@ g4lidar::recording_reader read_items(
 [[nodiscard]] nlohmann::ordered_json counts_as_json(const g4lidar::stream_counts& counts,
                                                     std::uint64_t bytes);
 
-/// Bytes of a beginning: enough to see how a terminal has changed them.
-inline constexpr std::size_t beginning_bytes = std::size_t{128} << 10U;
 /// The beginning of the file at `path`; nothing of what is no regular file, or cannot be read.
 [[nodiscard]] std::vector<std::uint8_t> beginning_of(const std::string& path);
+
+/// The failure of text or of the frames of another maker, of which `found` are sentences.
+[[nodiscard]] failure not_packets(std::string_view found);
 
 /// The failure of an input whose `bytes` bytes, which begin with `beginning`, contain no packet: why, and what to do.
 [[nodiscard]] failure without_packets(const g4lidar::stream_counts& counts, std::uint64_t bytes,

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <string_view>
@@ -16,6 +17,7 @@
 #include "g4lidar/core/model_choice.hpp"
 #include "g4lidar/recording/raw_bytes.hpp"
 #include "g4lidar/transport/forwarding.hpp"
+#include "input.hpp"
 #include "interrupt.hpp"
 
 namespace g4_tool {
@@ -87,10 +89,12 @@ sim::world load_scene(const sim::setup& setup) {
 
 namespace {
 
-bool is_regular_file(const std::string& path) {
+/// Nothing of what is no regular file.
+std::optional<std::uint64_t> size_of_file(const std::string& path) {
   struct stat found{};
   const bool is_known = (path == "-" ? ::fstat(0, &found) : ::stat(path.c_str(), &found)) == 0;
-  return is_known && S_ISREG(found.st_mode);
+  if (!is_known || !S_ISREG(found.st_mode)) return std::nullopt;
+  return static_cast<std::uint64_t>(found.st_size);
 }
 
 /// Whether a name at which nothing is was to be a file's.
@@ -139,6 +143,9 @@ std::string alternatives_to(const g4lidar::model& found) {
   }
   return words;
 }
+
+constexpr const char* raw_bytes_advice =
+    "Give a file of raw bytes from the lidar's port, or pipe them in.";
 
 /// That of --model, or of the name; null: none is named.
 const g4lidar::model* named_model(const common_options& options) {
@@ -211,6 +218,7 @@ void refuse_options_of_others(const common_options& options, const lidar_options
   given.reconnect = options.on_loss.given.has_value();
   given.playback = how.playback;
   given.raw_sample_rate_hz = how.raw_sample_rate_hz;
+  given.counts_times = how.counts_times;
   if (given.playback.speed == as_recorded) given.playback.speed = lidar_options().playback.speed;
   const auto wrong = problem_with_source(given);
   if (!wrong) return;
@@ -234,7 +242,7 @@ const g4lidar::model* model_of(const common_options& options,
   const g4lidar::model* const named = named_model(options);
   if (kind == source_kind::raw_bytes && named == nullptr) {
     const std::string path = path_of_source(options.source);
-    if (!is_regular_file(path)) return nullptr;
+    if (!size_of_file(path)) return nullptr;
     const recognised_model found = recognised_in(path);
     if (shown == nullptr) report_model(found);
     if (shown != nullptr) *shown = found;
@@ -281,8 +289,19 @@ lidar_options options_for(const common_options& options, lidar_options how) {
 }
 
 failure failure_of(const common_options& options, const g4lidar::error& why) {
+  const bool is_raw = kind_of_source(options.source) == source_kind::raw_bytes;
+  const std::string title = title_of_input(options.source);
+  if (is_raw && why == problem::bad_file && why.system_errno() == 0) {
+    if (why.detail() == error_detail::known_bytes) return not_packets(why.subject());
+    return {exit_code::bad_file,
+            title +
+                " is a recording, not raw bytes. Give the file's name to g4-dump "
+                "dump, scan or packets: a recording in a pipe is not read."};
+  }
+  if (is_raw && why.doing() == task::opening && why.system_errno() != 0)
+    return not_opened(title, why.system_errno(), raw_bytes_advice);
   if (why.detail() != error_detail::missing_path || !is_file_name(options.source))
-    return failure(why, why.doing() == task::reading);
+    return failure(why, why.doing() == task::reading && !is_raw);
   return failure(
       exit_code::bad_file,
       fmt::format("there is no file {}. Check the name; g4-dump list shows the serial ports.",
@@ -290,12 +309,58 @@ failure failure_of(const common_options& options, const g4lidar::error& why) {
       name_of(why.code()));
 }
 
+bool is_regular_file(const std::string& source) {
+  return size_of_file(path_of_source(source)).has_value();
+}
+
+std::string title_of_input(const std::string& source) {
+  const std::string path = path_of_source(source);
+  return path == "-" ? "standard input" : in_quotes(path);
+}
+
+namespace {
+
+/// Keeps the first bytes that are read.
+class observed_beginning final : public forwarding_transport {
+ public:
+  observed_beginning(std::unique_ptr<transport> inner, std::vector<std::uint8_t>& into)
+      : forwarding_transport(std::move(inner)), into_(into) {
+    into_.reserve(beginning_bytes);
+  }
+
+  [[nodiscard]] result<received> read(std::span<std::uint8_t> out,
+                                      std::int64_t deadline_ns) noexcept override {
+    auto got = inner().read(out, deadline_ns);
+    if (!got || into_.size() == beginning_bytes) return got;
+    const auto more = out.first(std::min(got->count, beginning_bytes - into_.size()));
+    into_.insert(into_.end(), more.begin(), more.end());
+    return got;
+  }
+
+ private:
+  std::vector<std::uint8_t>& into_;
+};
+
+}  // namespace
+
 opened_source::opened_source(const common_options& options, lidar_options how) {
+  const source_kind kind = kind_of_source(options.source);
+  const std::string path = path_of_source(options.source);
+  const bool is_raw = kind == source_kind::raw_bytes;
+  if (is_raw && path == "-" && ::isatty(0) != 0) {
+    throw failure(exit_code::usage,
+                  std::string("standard input is a terminal. ") + raw_bytes_advice);
+  }
   how = options_for(options, std::move(how));
-  how.wrap = [this, wrap = std::move(how.wrap)](std::unique_ptr<connector> from) {
+  how.wrap = [this, is_raw, wrap = std::move(how.wrap)](std::unique_ptr<connector> from) {
     played_ = replay::reader_of(*from);
     simulation_ = simulation_of(*from);
-    return wrap ? wrap(std::move(from)) : result<std::unique_ptr<connector>>(std::move(from));
+    auto wrapped =
+        wrap ? wrap(std::move(from)) : result<std::unique_ptr<connector>>(std::move(from));
+    if (!wrapped || !is_raw) return wrapped;
+    return for_each_connection([this](std::unique_ptr<transport> port) {
+      return std::make_unique<observed_beginning>(std::move(port), beginning_);
+    })(*std::move(wrapped));
   };
   const auto wait = std::exchange(how.device_wait, std::chrono::milliseconds(0));
   auto opened = g4lidar::lidar::open(how);
@@ -310,6 +375,8 @@ opened_source::opened_source(const common_options& options, lidar_options how) {
     throw failure_of(options, opened.error());
   }
   lidar_.emplace(std::move(*opened));
+  if (played_ != nullptr) size_ = played_->size();
+  if (is_raw) size_ = size_of_file(path).value_or(0);
   report_contradictions(*lidar_);
   logger::verbose(fmt::format("opened {}\n", lidar_->name()));
 }

@@ -6,7 +6,9 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "cli/common_options.hpp"
 #include "g4lidar/lidar.hpp"
@@ -57,6 +59,13 @@ void report_candidates(std::span<const g4lidar::model* const> candidates);
 /// The error of a lidar that was opened so, in the words of the tool.
 [[nodiscard]] failure failure_of(const common_options& options, const g4lidar::error& why);
 
+/// Bytes of a beginning: enough to see how a terminal has changed them.
+inline constexpr std::size_t beginning_bytes = std::size_t{128} << 10U;
+/// Whether the source is a file on disk, which has an end.
+[[nodiscard]] bool is_regular_file(const std::string& source);
+/// Its name in messages.
+[[nodiscard]] std::string title_of_input(const std::string& source);
+
 /// The lidar behind the word SOURCE, and what else is there.
 class opened_source {
  public:
@@ -79,6 +88,13 @@ class opened_source {
 
   /// The reader of the recording that is played; null for every other source.
   [[nodiscard]] const g4lidar::recording_reader* recording() const noexcept { return played_; }
+  /// The bytes of its file, and how many of them have been read; 0 of all else.
+  [[nodiscard]] std::uint64_t size() const noexcept { return size_; }
+  [[nodiscard]] std::uint64_t position() const noexcept {
+    return played_ != nullptr ? played_->position() : lidar_->counts().bytes;
+  }
+  /// The first bytes of raw bytes: what is known of them where they are not packets.
+  [[nodiscard]] std::span<const std::uint8_t> beginning() const noexcept { return beginning_; }
   /// What is wrong with the recording that is played, as far as it was read; nothing of all else.
   [[nodiscard]] g4lidar::recording_damage damage() const {
     return played_ == nullptr ? g4lidar::recording_damage{} : played_->damage();
@@ -87,6 +103,8 @@ class opened_source {
  private:
   const sim::simulated_source* simulation_ = nullptr;  // the lidar's
   const g4lidar::recording_reader* played_ = nullptr;  // the same
+  std::uint64_t size_ = 0;
+  std::vector<std::uint8_t> beginning_;  // outlives the lidar
   std::optional<g4lidar::lidar> lidar_;
 };
 
