@@ -57,7 +57,7 @@ struct service_options {
   /// The motion that another program states, for deskewing::by_path where the source states none: adds poses until the
   /// end of a scan, by the clock of its points. `ahead_ns`: the clock of stamps minus that one. In the thread of a lidar.
   std::function<void(odometry_path&, const scan&, std::int64_t ahead_ns)> other_odometry{};
-  std::string other_odometry_place{};  ///< For texts: "on /odom".
+  std::string other_odometry_place{};  ///< Where that is, for texts: "on /odom".
   /// Stamps by another clock than the wall clock: from the wall clock minus the clock of the points to the difference
   /// that is used; nothing as long as it is not known. In the thread of a lidar.
   std::function<std::optional<std::int64_t>(std::int64_t wall_ahead_ns)> stamp_clock{};
@@ -222,10 +222,11 @@ class G4LIDAR_API lidar_service {
   /// The same.
   void seek(std::int64_t position_ns);
 
-  /// Statuses for /diagnostics. First those of each lidar, with its name: state (`words`: an error in the words of the
-  /// program; an empty text is no error), stages, counts. Then those of merging and deskewing. *One thread at a time.*
+  /// Statuses for /diagnostics. First those of each lidar, with its name: state, stages, counts. Then those of merging
+  /// and deskewing. `why`: reader_status::why of a lidar in the words of the program; an empty text is no error.
+  /// *One thread at a time.*
   [[nodiscard]] std::vector<diagnostic_status> diagnosis(
-      const std::function<std::string(const error&)>& words = {});
+      const std::function<std::string(std::size_t lidar)>& why = {});
   /// Those of merging and deskewing alone.
   [[nodiscard]] std::vector<diagnostic_status> motion_diagnosis();
 

@@ -49,6 +49,7 @@ struct lidar_service::state {
       : core(std::move(options), lidars, outputs) {
     for (service_lidar& each : lidars)
       channels.emplace_back(std::move(each), channels.size(), core);
+    core.begin(channels.front().has_odometry());
   }
 
   service_core core;
@@ -78,8 +79,7 @@ struct lidar_service::state {
     }
     changed.notify_one();
   }
-  std::vector<diagnostic_status> statuses_of(
-      lidar_channel& channel, const std::function<std::string(const error&)>& words) const;
+  std::vector<diagnostic_status> statuses_of(lidar_channel& channel, const std::string* why) const;
 };
 
 void lidar_service::state::supervise() {
@@ -240,13 +240,12 @@ void lidar_service::seek(std::int64_t position_ns) {
   for (lidar_channel& each : state_->channels) each.reader().seek(position_ns);
 }
 
-std::vector<diagnostic_status> lidar_service::state::statuses_of(
-    lidar_channel& channel, const std::function<std::string(const error&)>& words) const {
+std::vector<diagnostic_status> lidar_service::state::statuses_of(lidar_channel& channel,
+                                                                 const std::string* why) const {
   const reader_status now = channel.reader().status();
   const bool is_end = channel.is_file() && now.why && *now.why == problem::end_of_input;
-  std::string why;
-  if (now.why && (words || !is_end)) why = words ? words(*now.why) : now.why->message();
-  diagnostic_status first = status_of(now, why);
+  const std::string usual = now.why && !is_end ? now.why->message() : "";
+  diagnostic_status first = status_of(now, why != nullptr ? *why : usual);
   auto all = g4lidar::statuses_of(channel.diagnosis().stages(core.filters().current_filters()),
                                   channel.reader().counts(), first.hardware_id);
   all.insert(all.begin(), std::move(first));
@@ -257,12 +256,14 @@ std::vector<diagnostic_status> lidar_service::state::statuses_of(
 }
 
 std::vector<diagnostic_status> lidar_service::diagnosis(
-    const std::function<std::string(const error&)>& words) {
+    const std::function<std::string(std::size_t)>& why) {
   std::vector<diagnostic_status> all;
-  for (lidar_channel& each : state_->channels) {
-    for (diagnostic_status& made : state_->statuses_of(each, words)) all.push_back(std::move(made));
+  for (std::size_t i = 0; i < size(); ++i) {
+    const std::string text = why ? why(i) : "";
+    for (diagnostic_status& made : state_->statuses_of(state_->channels[i], why ? &text : nullptr))
+      all.push_back(std::move(made));
   }
-  const std::string id = state_->channels.size() == 1 ? all.front().hardware_id : "";
+  const std::string id = size() == 1 ? all.front().hardware_id : "";
   for (diagnostic_status& made : motion_diagnosis()) {
     made.hardware_id = id;
     all.push_back(std::move(made));

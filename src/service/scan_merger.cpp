@@ -33,9 +33,9 @@ std::optional<merged_scan> scan_merger::add(std::size_t index, scan_shaper& shap
     if (detail::saturating_sub(here.end_ns, parts_[earlier].end_ns) < fresh_scan_ns)
       return std::nullopt;  // that one leads
   }
-  update_model();
-  merged_scan made{.for_grid = {.points = {}, .model = &model_},
-                   .kept = {.points = {}, .model = &model_},
+  const g4lidar::model& measured = merged_model();
+  merged_scan made{.for_grid = {.points = {}, .model = &measured},
+                   .kept = {.points = {}, .model = &measured},
                    .kept_of_each = {},
                    .reference_ns = here.end_ns,
                    .moved = motion_of_robot(here, shaper, path)};
@@ -55,17 +55,25 @@ std::optional<merged_scan> scan_merger::add(std::size_t index, scan_shaper& shap
   return made;
 }
 
-void scan_merger::update_model() {
+const model& scan_merger::merged_model() {
   const auto bits_of = [](const part& each) { return intensity_bits(each.model->samples.layout); };
-  model_ = *std::ranges::max_element(parts_, {}, bits_of)->model;
-  model_.turn_deg = g4_model.turn_deg;
-  model_.rates = std::ranges::max_element(parts_, {}, [](const part& each) {
-                   return default_bins(*each.model);
-                 })->model->rates;
+  g4lidar::model made = *std::ranges::max_element(parts_, {}, bits_of)->model;
+  made.turn_deg = g4_model.turn_deg;
+  made.rates = std::ranges::max_element(parts_, {}, [](const part& each) {
+                 return default_bins(*each.model);
+               })->model->rates;
   for (const part& each : parts_) {
-    model_.range.min_mm = std::min(model_.range.min_mm, each.model->range.min_mm);
-    model_.range.max_mm = std::max(model_.range.max_mm, each.model->range.max_mm);
+    made.range.min_mm = std::min(made.range.min_mm, each.model->range.min_mm);
+    made.range.max_mm = std::max(made.range.max_mm, each.model->range.max_mm);
   }
+  // Another one only when a lidar turns out to be of another model.
+  const auto is_same = [&made](const g4lidar::model& last) {
+    return last.word == made.word && last.samples.layout == made.samples.layout &&
+           default_bins(last) == default_bins(made) && last.range.min_mm == made.range.min_mm &&
+           last.range.max_mm == made.range.max_mm;
+  };
+  if (models_.empty() || !is_same(models_.back())) models_.push_back(made);
+  return models_.back();
 }
 
 robot_motion scan_merger::motion_of_robot(const part& leader, const scan_shaper& shaper,

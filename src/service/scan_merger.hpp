@@ -28,7 +28,7 @@ struct robot_motion {
 
 /// One scan of all lidars, at the time `reference_ns`. Points that are deskewed have this time; all others have their own,
 /// and are flagged not_deskewed if deskewing was wanted. Its model has the turn of a G4, the shortest and the longest range
-/// of all, and intensities if one of them has. Valid until the next one.
+/// of all, and intensities if one of them has, and is valid as long as the merger. Valid until the next one.
 struct merged_scan {
   scan for_grid;  ///< See scan_shaper::for_grid().
   scan kept;      ///< See scan_shaper::kept(); empty if nobody wants it.
@@ -75,14 +75,14 @@ class scan_merger {
   [[nodiscard]] robot_motion motion_of_robot(const part& leader, const scan_shaper& shaper,
                                              const path_until& path) const;
   /// What measures merged scans: see merged_scan.
-  void update_model();
+  [[nodiscard]] const g4lidar::model& merged_model();
   /// Such points of all parts, as one scan at `reference_ns`.
   [[nodiscard]] merged merged_points(std::vector<point> part::* which, std::int64_t reference_ns,
                                      const robot_motion& moved, std::vector<point>& out) const;
 
   deskewing deskew_;
   std::deque<part> parts_;
-  g4lidar::model model_ = g4_model;
+  std::deque<g4lidar::model> models_;  // each stays valid; the last one is that of the newest scan
   std::atomic<std::uint64_t> scans_ = 0;
   std::vector<point> for_grid_;
   std::vector<point> kept_;

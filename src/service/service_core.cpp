@@ -28,13 +28,19 @@ service_core::service_core(service_options options, const std::vector<service_li
       parts.push_back({each.name, each.mount.value_or(mounting{})});
     merger_.emplace(deskew, parts);
   }
-  if (deskew != deskewing::none) watch_.emplace(deskew, options_.other_odometry_place);
   for (const service_lidar& each : lidars) {
     shaping& made = lidars_.emplace_back();
     made.mount = each.mount;
     made.place = each.mount.value_or(mounting{});
     made.deskew = deskew;
   }
+}
+
+void service_core::begin(bool has_odometry) {
+  const deskewing deskew = lidars_.front().deskew;
+  if (deskew == deskewing::none) return;
+  const bool is_elsewhere = options_.other_odometry && !has_odometry;
+  watch_.emplace(deskew, is_elsewhere ? options_.other_odometry_place : "in the source");
 }
 
 std::string service_core::problem_with(std::span<const named_value> wanted) const {
@@ -149,7 +155,11 @@ void service_core::add_merged(std::size_t lidar, const scan& found,
   made.made.for_grid = true;
   made.for_grid = joined->for_grid;
   made.kept = joined->kept;
-  made.for_grid.revolution = made.kept.revolution = found.revolution;
+  for (scan* const each : {&made.for_grid, &made.kept}) {
+    each->revolution = found.revolution;
+    each->turned_deg = found.turned_deg;
+    each->duration_ns = found.duration_ns;
+  }
   made.kept_of_each = joined->kept_of_each;
   made.first_ns = joined->reference_ns;
   if (here.deskew == deskewing::by_path)

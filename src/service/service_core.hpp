@@ -45,6 +45,9 @@ class service_core {
   /// Sets them for the next scan of each lidar. *Any thread.*
   void set_filters(std::span<const named_value> wanted);
 
+  /// Before all else. `has_odometry`: whether the source states the motion.
+  void begin(bool has_odometry);
+
   // In the threads of the lidars.
   void opened(std::size_t lidar, const known_motion& motion);
   /// A pose that the source states.

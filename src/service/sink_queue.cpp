@@ -15,23 +15,20 @@ namespace {
 constexpr std::ptrdiff_t most_scans = 4;
 constexpr std::ptrdiff_t most_others = 64;
 
-/// A service_scan with all that it views. The model of merged scans is in it, too.
+/// A service_scan with all that it views.
 struct scan_copy {
   service_scan made;
-  g4lidar::model model;
   owned_scan for_grid;
   owned_scan kept;
   std::vector<std::size_t> kept_of_each;
 
   explicit scan_copy(const service_scan& from)
       : made(from),
-        model(*from.kept.model),
         for_grid(from.for_grid),
         kept(from.kept),
         kept_of_each(from.kept_of_each.begin(), from.kept_of_each.end()) {
     made.for_grid = for_grid.view();
     made.kept = kept.view();
-    made.for_grid.model = made.kept.model = &model;
     made.kept_of_each = kept_of_each;
   }
   scan_copy(const scan_copy&) = delete;
