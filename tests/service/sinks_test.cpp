@@ -40,7 +40,7 @@ class ServiceSinks : public Service {
 TEST_F(ServiceSinks, ASlowOneDelaysNobody_AndGetsTheNewestScansAndTheLastState) {
   outputs = {{&slow}, {&heard, delivery::in_reader}};
   begin("sim:?seed=4");
-  ASSERT_TRUE(slow.wait_for_scans(1));
+  ASSERT_TRUE(slow.wait([&] { return slow.scans.size() == 1; }));
   ASSERT_TRUE(heard.wait_for_scans(12)) << "the lidar and others go on";
   for (const bool runs : {false, true, false}) {
     service->allow(runs);
@@ -48,7 +48,7 @@ TEST_F(ServiceSinks, ASlowOneDelaysNobody_AndGetsTheNewestScansAndTheLastState) 
   }
   EXPECT_EQ(slow.number_of_scans(), 1U);
   slow.release();
-  ASSERT_TRUE(slow.wait_for_scans(4));
+  ASSERT_TRUE(slow.wait([&] { return slow.scans.size() >= 5; }));
   ASSERT_TRUE(slow.wait_for_state(reader_state::resting));
   service->stop();
   ASSERT_EQ(slow.scans.size(), 5U);
@@ -61,7 +61,7 @@ TEST_F(ServiceSinks, ASlowOneDelaysNobody_AndGetsTheNewestScansAndTheLastState) 
 TEST_F(ServiceSinks, ASlowOneGetsTheNewest64OfAllElse) {
   outputs = {{&slow}, {&heard, delivery::in_reader}};
   begin("sim:?seed=4", {.gives_points = true});
-  ASSERT_TRUE(slow.wait_for_scans(1));
+  ASSERT_TRUE(slow.wait([&] { return slow.scans.size() == 1; }));
   ASSERT_TRUE(heard.wait([&] { return heard.times.size() > 200; }));
   service->allow(false);
   ASSERT_TRUE(heard.wait_for_state(reader_state::resting));
@@ -143,7 +143,8 @@ TEST_F(ServiceSinks, MotorsRestWhileNothingIsWanted) {
   heard.want({});
   begin(port(), {.is_standby = true});
   ASSERT_TRUE(heard.wait_for_state(reader_state::resting));
-  for (const service_demand& demand : {service_demand{.for_grid = true}, service_demand{.runs = true}}) {
+  for (const service_demand& demand :
+       {service_demand{.for_grid = true}, service_demand{.runs = true}}) {
     heard.want(demand);
     ASSERT_TRUE(heard.wait_for_scans(1));
     EXPECT_TRUE(is_scanning(device));
