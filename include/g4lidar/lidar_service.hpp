@@ -191,7 +191,7 @@ class G4LIDAR_API lidar_service {
 
   /// How many lidars there are.
   [[nodiscard]] std::size_t size() const noexcept;
-  /// Whether the source states the motion of a robot.
+  /// Whether the source states the motion of a robot; that of a recording is only read if the options use it.
   [[nodiscard]] bool has_odometry() const noexcept;
   /// Of `lidar`, less than size(): as of background_reader.
   [[nodiscard]] reader_status status(std::size_t lidar) const;

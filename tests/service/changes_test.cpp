@@ -109,6 +109,8 @@ TEST_F(ServiceChanges, WhileTheLidarIsSearched) {
   const auto begun = std::chrono::steady_clock::now();
   EXPECT_EQ(service->change_now(0, {{"frequency", 10.0}, {"range_min", 0.5}}, 10 * patience),
             "the lidar is not connected");
+  EXPECT_THAT(service->change_now(0, {{"frequency", 10.0}, {"fov", std::string("left")}}),
+              HasSubstr("fov"));
   EXPECT_LT(std::chrono::steady_clock::now() - begun, patience);
   EXPECT_EQ(value("range_min"), parameter_value(0.0));
   EXPECT_EQ(service->change_now(0, {{"range_min", 0.5}}), "") << "a filter needs no lidar";

@@ -81,7 +81,7 @@ TEST_F(ServiceMotion, OfARecording_PlacesAreThoseOfItsOdometry) {
 }
 
 TEST_F(ServiceMotion, OfARecordingWithoutAMount_ItIsNotKnown) {
-  play(driven(), {.follows_motion = true});
+  play(driven(), {.follows_motion = true, .gives_points = true});
   ASSERT_GT(heard.scans.size(), 40U);
   for (const seen_scan& each : heard.scans) EXPECT_FALSE(each.about.place);
 }
