@@ -35,10 +35,12 @@ namespace g4lidar {
 struct service_lidar {
   std::string name{};  ///< "front"; empty for the only one.
   lidar_options
-      options{};  ///< How it is opened; `wrap` and `is_cancelled` are called in its thread.
-  std::optional<mounting> mount{};  ///< Where it is on the robot; that of `sim:` is known.
-  std::vector<named_value>
-      settings{};  ///< Made each time when it is opened, until they are changed.
+      options{};  ///< How it is opened; `wrap` and `is_cancelled` are called in its thread,
+                  ///< `is_cancelled` also by make().
+  /// Where it is on the robot. That of a single `sim:` is known; of several lidars, one without it is at the origin.
+  std::optional<mounting> mount{};
+  /// Of the device, made each time when it is opened, until they are changed.
+  std::vector<named_value> settings{};
 };
 
 /// What a service does. By default it filters nothing and deskews nothing.
@@ -47,7 +49,7 @@ struct service_options {
   g4lidar::mask mask{};       ///< Returns inside are left out.
   deskewing deskew = deskewing::none;
   /// Whether points are deskewed, and places known, where the source itself states its motion, although `deskew` is none:
-  /// of a robot of `sim:`, and of a recording with odometry whose lidar has a `mount`.
+  /// of a robot of `sim:`, and of a recording with odometry whose lidar has a `mount` and is the only one.
   bool follows_motion = false;
   bool restamps = false;  ///< See shaping_options::restamps.
   /// Whether points and odometry are given as they come, and not with each scan.
@@ -59,7 +61,7 @@ struct service_options {
   std::function<void(odometry_path&, const scan&, std::int64_t ahead_ns)> other_odometry{};
   std::string other_odometry_place{};  ///< Where that is, for texts: "on /odom".
   /// Stamps by another clock than the wall clock: from the wall clock minus the clock of the points to the difference
-  /// that is used; nothing as long as it is not known. In the thread of a lidar.
+  /// that is used; nothing as long as it is not known. In the threads of the lidars, of several ones at the same time.
   std::function<std::optional<std::int64_t>(std::int64_t wall_ahead_ns)> stamp_clock{};
 };
 
@@ -85,9 +87,10 @@ struct lidar_place {
 /// A scan as a service gives it: of one lidar in its own frame, or of all in that of the robot, with the turn of a G4.
 /// Valid during a call.
 struct service_scan {
-  service_demand made{};  ///< What was wanted by a sink; the rest is empty.
-  scan for_grid{};        ///< For fill_grid() and fill_laser_scan().
-  scan kept{};            ///< What the filters keep.
+  /// What was wanted by a sink, and `for_grid` of several lidars; the rest is empty.
+  service_demand made{};
+  scan for_grid{};  ///< For fill_grid() and fill_laser_scan().
+  scan kept{};      ///< What the filters keep.
   std::span<const std::size_t>
       kept_of_each{};            ///< Of merged: so many points are of each lidar, in order.
   grid_options grid{};           ///< What ranges without return become, and the longest range.
@@ -130,7 +133,7 @@ class G4LIDAR_API service_sink {
   /// The state of its reader, or the reason for it, has changed.
   virtual void on_state(std::size_t /*lidar*/, reader_state /*state*/,
                         const std::optional<error>& /*why*/) {}
-  /// A value of lidar_service::value() has changed, or the model. `refused`: why settings could not be made when it was
+  /// A setting in lidar_service::value() has changed, or the model; not a filter. `refused`: why settings could not be made when it was
   /// opened; else empty.
   virtual void on_values(std::size_t /*lidar*/, const std::string& /*refused*/) {}
 
@@ -169,7 +172,7 @@ struct service_output {
 class G4LIDAR_API lidar_service {
  public:
   /// Opens nothing but recordings, for their odometry. One lidar, or 2 to 32 that are merged: `merges`. Fails with
-  /// bad_option, which names what is wrong: no lidar, too many, two of one name.
+  /// bad_option, which names what is wrong: no lidar, too many, two of one name, a setting that does not exist.
   [[nodiscard]] static result<std::unique_ptr<lidar_service>> make(
       std::vector<service_lidar> lidars, service_options options,
       std::vector<service_output> outputs);
@@ -178,16 +181,17 @@ class G4LIDAR_API lidar_service {
   /// Like stop().
   ~lidar_service();
 
-  /// Starts the threads, once. Fails with system, and with gone after stop().
+  /// Starts the threads; a further call does nothing. Fails with system, and with gone after stop().
   [[nodiscard]] result<void> start();
-  /// Ends the threads and stops the motors. No sink is called after it; not in a sink. See background_reader::stop().
+  /// Ends the threads and stops the motors. No sink is called after it. Not in a sink, nor in a function that is given
+  /// to change() or ask(). See background_reader::stop().
   void stop() noexcept;
   /// Whether motors may run; so they may at the beginning.
   void allow(bool runs) noexcept;
 
   /// How many lidars there are.
   [[nodiscard]] std::size_t size() const noexcept;
-  /// Whether the source states the motion of a robot.
+  /// Whether the source states the motion of a robot; that of a recording is only read if the options use it.
   [[nodiscard]] bool has_odometry() const noexcept;
   /// Of `lidar`, less than size(): as of background_reader.
   [[nodiscard]] reader_status status(std::size_t lidar) const;
@@ -206,11 +210,11 @@ class G4LIDAR_API lidar_service {
 
   /// Changes values, all or none: settings of this lidar, filters of all. `done` is called once, in any thread, with why
   /// not, or an empty text: at the latest after `longest`, then the lidar may still be set later; at once if it is being
-  /// searched. Settings that were made are undone as far as the lidar answers.
+  /// searched, before start(), and after stop(), where filters are changed nevertheless if no setting is. Settings that were made are undone as far as the lidar answers.
   void change(std::size_t lidar, std::vector<named_value> wanted,
               std::function<void(const std::string&)> done,
               std::chrono::milliseconds longest = std::chrono::seconds(10));
-  /// The same, and waits for it.
+  /// The same, and waits for it. Not in the thread of a lidar.
   [[nodiscard]] std::string change_now(
       std::size_t lidar, std::vector<named_value> wanted,
       std::chrono::milliseconds longest = std::chrono::seconds(10));

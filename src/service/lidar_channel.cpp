@@ -76,6 +76,10 @@ void lidar_channel::on_open(lidar& device) {
     settings_.fix("serial_number", std::string(device.information().serial_number()));
   std::string refused;
   if (!is_file_) {
+    // It may be another one, or have lost them.
+    for (const parameter& each : all_parameters()) {
+      if (each.kind == parameter_kind::device) settings_.fix(each.name, {});
+    }
     if (core_.options().reads_settings) settings_.read_device(device);
     std::vector<named_value> missing;
     for (const auto& [name, value] : wanted_) {

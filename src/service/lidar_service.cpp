@@ -26,6 +26,8 @@ constexpr std::size_t most_lidars = 32;
 /// Between two looks at what sinks want, and at changes that wait.
 constexpr auto standby_interval = 100ms;
 constexpr auto change_interval = 20ms;
+/// Of a change.
+constexpr std::chrono::milliseconds longest_change = std::chrono::hours(24 * 365);
 /// The prefix of all statuses.
 constexpr std::string_view library_name = "g4lidar: ";
 
@@ -61,9 +63,15 @@ struct lidar_service::state {
   bool is_over = false;
   bool is_new = false;
   std::atomic<bool> is_allowed = true;
+  std::mutex rest_mutex;  // protects the next one
+  bool is_resting = false;
+  std::mutex start_mutex;  // of start() and stop(); protects the next one
   std::thread supervisor;
 
+  /// A request wakes the threads of the lidars.
   void rest(bool rests) {
+    const std::lock_guard lock(rest_mutex);
+    if (std::exchange(is_resting, rests) == rests) return;
     for (lidar_channel& each : channels) each.reader().rest(rests);
   }
   void update_rest() {
@@ -72,6 +80,14 @@ struct lidar_service::state {
     rest(rests || !is_allowed);
   }
   void supervise();
+  /// Why they cannot be made, or empty. In the thread of the lidar.
+  [[nodiscard]] std::string set(lidar_channel& channel, lidar* found,
+                                const std::vector<named_value>& device,
+                                const std::vector<named_value>& filters);
+  [[nodiscard]] bool is_ended() {
+    const std::lock_guard lock(mutex);
+    return is_over;
+  }
   void wake() {
     {
       const std::lock_guard lock(mutex);
@@ -102,6 +118,25 @@ void lidar_service::state::supervise() {
   }
 }
 
+std::string lidar_service::state::set(lidar_channel& channel, lidar* found,
+                                      const std::vector<named_value>& device,
+                                      const std::vector<named_value>& filters) {
+  std::vector<named_value> before;
+  for (const auto& [name, value] : device) {
+    const parameter* const row = find_parameter(name);
+    if (row == nullptr) continue;
+    const parameter_value now = channel.settings().value(*row);
+    if (now != parameter_value()) before.emplace_back(name, now);
+  }
+  // Others may have changed filters since then, and while the lidar is set.
+  std::string wrong = core.problem_with(filters);
+  if (wrong.empty()) wrong = channel.set(found, device);
+  if (!wrong.empty()) return wrong;
+  wrong = core.set_filters(filters);
+  if (!wrong.empty()) static_cast<void>(channel.set(found, before));
+  return wrong;
+}
+
 result<std::unique_ptr<lidar_service>> lidar_service::make(std::vector<service_lidar> lidars,
                                                            service_options options,
                                                            std::vector<service_output> outputs) {
@@ -111,6 +146,11 @@ result<std::unique_ptr<lidar_service>> lidar_service::make(std::vector<service_l
     const auto later = std::span(lidars).subspan(i + 1);
     if (std::ranges::find(later, lidars[i].name, &service_lidar::name) != later.end())
       return failure(task::opening, problem::bad_option, "two lidars have the same name");
+    for (const auto& [name, value] : lidars[i].settings) {
+      const parameter* const row = find_parameter(name);
+      if (row == nullptr || row->kind != parameter_kind::device)
+        return failure(task::opening, problem::bad_option, "there is no setting " + name);
+    }
   }
   return std::unique_ptr<lidar_service>(
       new lidar_service(std::make_unique<state>(std::move(lidars), std::move(options), outputs)));
@@ -120,6 +160,10 @@ lidar_service::lidar_service(std::unique_ptr<state> made) : state_(std::move(mad
 lidar_service::~lidar_service() { stop(); }
 
 result<void> lidar_service::start() {
+  const std::lock_guard lock(state_->start_mutex);
+  if (state_->supervisor.joinable()) return {};
+  if (state_->is_ended())
+    return failure(task::starting, problem::gone, "this service, which was stopped");
   if (const auto started = state_->core.sinks().start(); !started) return started;
   state_->update_rest();
   try {
@@ -127,6 +171,7 @@ result<void> lidar_service::start() {
   } catch (const std::system_error& refused) {
     return failure(task::starting, problem::system, "a thread", refused.code().value());
   }
+  state_->changes.begin();
   for (lidar_channel& each : state_->channels) {
     if (const auto started = each.reader().start(); !started) return started;
   }
@@ -134,16 +179,17 @@ result<void> lidar_service::start() {
 }
 
 void lidar_service::stop() noexcept {
+  const std::lock_guard only(state_->start_mutex);
   {
     const std::lock_guard lock(state_->mutex);
     state_->is_over = true;
   }
   state_->changed.notify_one();
   if (state_->supervisor.joinable()) state_->supervisor.join();
+  state_->changes.end();
   state_->rest(true);  // all at once, before each is waited for
   for (lidar_channel& each : state_->channels) each.reader().stop();
   state_->core.sinks().stop();
-  state_->changes.end();
 }
 
 void lidar_service::allow(bool runs) noexcept {
@@ -194,20 +240,16 @@ void lidar_service::change(std::size_t lidar, std::vector<named_value> wanted,
   const std::vector<named_value> filters(wanted.begin(), settings.begin());
   std::vector<named_value> device(settings.begin(), settings.end());
   service_core& core = state_->core;
+  if (device.empty()) return done(core.set_filters(filters));
   if (const std::string wrong = core.problem_with(filters); !wrong.empty()) return done(wrong);
-  if (device.empty()) {
-    core.set_filters(filters);
-    return done({});
-  }
-  const auto made = std::make_shared<pending_change>(lidar, pending_change::clock::now() + longest,
-                                                     std::move(done));
-  state_->changes.add(made);
+  const auto until = pending_change::clock::now() + std::min(longest, longest_change);
+  const auto made = std::make_shared<pending_change>(lidar, until, std::move(done));
+  if (!state_->changes.add(made)) return made->finish("the lidar is not connected");
   lidar_channel& channel = state_->channels[lidar];
   channel.reader().ask(
       [this, &channel, made, filters, device = std::move(device)](g4lidar::lidar* found) {
         if (!made->claim()) return;
-        const std::string wrong = channel.set(found, device);
-        if (wrong.empty()) state_->core.set_filters(filters);
+        const std::string wrong = state_->set(channel, found, device, filters);
         made->finish(wrong);
         if (!wrong.empty()) return;
         state_->core.sinks().call([&](service_sink& to) { to.on_values(made->lidar(), {}); });

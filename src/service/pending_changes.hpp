@@ -43,10 +43,17 @@ class pending_change {
 /// Withdraws those that take too long, or whose lidar is searched.
 class pending_changes {
  public:
-  void add(std::shared_ptr<pending_change> made) {
+  /// From now on somebody calls update().
+  void begin() {
+    const std::lock_guard lock(mutex_);
+    is_served_ = true;
+  }
+  /// Whether it is answered by update() or end().
+  [[nodiscard]] bool add(std::shared_ptr<pending_change> made) {
     const std::lock_guard lock(mutex_);
     std::erase_if(all_, [](const auto& each) { return each->is_answered(); });
-    all_.push_back(std::move(made));
+    if (is_served_) all_.push_back(std::move(made));
+    return is_served_;
   }
   /// `is_searched(lidar)`. Whether some are left.
   template <class IsSearched>
@@ -67,16 +74,18 @@ class pending_changes {
     }
     return !now.empty();
   }
-  /// All that are left.
+  /// Withdraws all that nobody makes now, and takes no more.
   void end() {
+    {
+      const std::lock_guard lock(mutex_);
+      is_served_ = false;
+    }
     update([](std::size_t) { return true; });
-    const std::lock_guard lock(mutex_);
-    for (const auto& each : all_) each->finish("the lidar is closed");
-    all_.clear();
   }
 
  private:
   std::mutex mutex_;
+  bool is_served_ = false;
   std::vector<std::shared_ptr<pending_change>> all_;
 };
 

@@ -27,7 +27,7 @@ std::optional<merged_scan> scan_merger::add(std::size_t index, scan_shaper& shap
   const scan for_grid = shaper.for_grid();
   copy(here.for_grid, for_grid.points);
   here.model = for_grid.model;
-  if (wants_kept) copy(here.kept, shaper.kept().points);
+  copy(here.kept, wants_kept ? shaper.kept().points : std::span<const point>());
   here.end_ns = detail::saturating_add(first_ns, duration_ns);
   for (std::size_t earlier = 0; earlier < index; ++earlier) {
     if (detail::saturating_sub(here.end_ns, parts_[earlier].end_ns) < fresh_scan_ns)

@@ -50,11 +50,12 @@ std::string service_core::problem_with(std::span<const named_value> wanted) cons
   return trial.change(nullptr, wanted);
 }
 
-void service_core::set_filters(std::span<const named_value> wanted) {
-  if (wanted.empty()) return;
+std::string service_core::set_filters(std::span<const named_value> wanted) {
+  if (wanted.empty()) return {};
   const std::lock_guard lock(changes_);
-  static_cast<void>(filters_.change(nullptr, wanted));
+  std::string wrong = filters_.change(nullptr, wanted);
   ++version_;
+  return wrong;
 }
 
 void service_core::opened(std::size_t lidar, const known_motion& motion) {

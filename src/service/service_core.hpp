@@ -42,8 +42,8 @@ class service_core {
 
   /// Why these filters cannot be set, or empty. *Any thread.*
   [[nodiscard]] std::string problem_with(std::span<const named_value> wanted) const;
-  /// Sets them for the next scan of each lidar. *Any thread.*
-  void set_filters(std::span<const named_value> wanted);
+  /// Sets them for the next scan of each lidar: the same. *Any thread.*
+  [[nodiscard]] std::string set_filters(std::span<const named_value> wanted);
 
   /// Before all else. `has_odometry`: whether the source states the motion.
   void begin(bool has_odometry);
