@@ -252,8 +252,8 @@ TEST_F(MergedView, ShowsTheReturnsOfBothLidars) {
   cli::write_file(path("rear.txt"), "wall -1 -2 1 -2\nlidar 0 0 -90\n");
   const std::string front = "front=sim:?world=" + path("front.txt");
   const std::string rear = "rear=sim:?world=" + path("rear.txt");
-  const auto shown = cli::run(
-      {"view", "--once", front, rear, "--merge", "--glyphs", "ascii", "--size", "50x18"});
+  const auto shown =
+      cli::run({"view", "--once", front, rear, "--merge", "--glyphs", "ascii", "--size", "50x18"});
   EXPECT_EQ(shown.code, 0) << shown.err;
   const std::vector<std::string> rows = cli::lines_of(shown.out);
   ASSERT_EQ(rows.size(), 18U);

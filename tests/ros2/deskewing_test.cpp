@@ -2,22 +2,18 @@
 // Scans that g4-ros2 filters and deskews, and what it reports where the motion is not known.
 #include <gmock/gmock.h>
 
-#include <array>
 #include <chrono>
 #include <csignal>
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
-#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "cli/program.hpp"
-#include "dds/bus.hpp"
 #include "diagnosis.hpp"
-#include "g4lidar/merge.hpp"
-#include "g4lidar/odometry_feed.hpp"
+#include "g4lidar/odometry_path.hpp"
 #include "lidar.hpp"
 #include "subscriber.hpp"
 #include "support/cloud_rows.hpp"
@@ -27,11 +23,6 @@ namespace ros2 {
 namespace {
 
 using g4lidar::deskewing;
-using g4lidar::mounted_scan;
-using g4lidar::mounting;
-using g4lidar::point;
-using g4lidar::scan_shaper;
-using g4lidar::stamped_pose;
 
 class DeskewedRobot : public cli::scratch {
  protected:
