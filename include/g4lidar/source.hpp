@@ -82,6 +82,8 @@ enum class source_kind : std::uint8_t {
 /// if it does not move. Independent of `of`.
 [[nodiscard]] G4LIDAR_API std::function<stamped_odometry()> robot_of(
     const sim::simulated_source& of);
+/// Where its robot has the lidar. Independent of `of`.
+[[nodiscard]] G4LIDAR_API mounting mounting_on_robot(const sim::simulated_source& of);
 
 /// As which model lidar::open() reads the source of these options, as far as it is known before that: what `sim:` states;
 /// else the model that is named; else what a recording states, and model_of_bytes(); of a device null: it is searched. Of

@@ -3,6 +3,7 @@
 
 #include <sys/stat.h>
 
+#include <numbers>
 #include <string>
 #include <utility>
 
@@ -289,6 +290,15 @@ std::function<stamped_odometry()> robot_of([[maybe_unused]] const sim::simulated
                             {at.x_m, at.y_m, at.yaw_rad},
                             {at.forward_m_per_s, at.left_m_per_s, at.yaw_rad_per_s}};
   };
+#else
+  return {};
+#endif
+}
+
+mounting mounting_on_robot([[maybe_unused]] const sim::simulated_source& of) {
+#if defined(G4LIDAR_HAS_SIM)
+  const sim::pose& at = of.mounted_at;
+  return {.pose = {at.x_m, at.y_m, at.heading_deg * std::numbers::pi / 180.0}};
 #else
   return {};
 #endif

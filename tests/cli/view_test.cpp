@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "program.hpp"
 #include "view/canvas.hpp"
 #include "view/picture.hpp"
 #include "view/radar.hpp"
@@ -243,4 +244,27 @@ TEST(Picture, WithLittleRoom_HasOneLine) {
 }
 
 }  // namespace
+class MergedView : public cli::scratch {};
+
+// Each sees a wall of its own, ahead of the robot and behind it.
+TEST_F(MergedView, ShowsTheReturnsOfBothLidars) {
+  cli::write_file(path("front.txt"), "wall -1 2 1 2\nlidar 0 0 -90\n");
+  cli::write_file(path("rear.txt"), "wall -1 -2 1 -2\nlidar 0 0 -90\n");
+  const std::string front = "front=sim:?world=" + path("front.txt");
+  const std::string rear = "rear=sim:?world=" + path("rear.txt");
+  const auto shown =
+      cli::run({"view", "--once", front, rear, "--merge", "--glyphs", "ascii", "--size", "50x18"});
+  EXPECT_EQ(shown.code, 0) << shown.err;
+  const std::vector<std::string> rows = cli::lines_of(shown.out);
+  ASSERT_EQ(rows.size(), 18U);
+  const auto has_returns = [](const std::string& row) {
+    return row.find('*') != std::string::npos;
+  };
+  EXPECT_TRUE(std::any_of(rows.begin(), rows.begin() + 7, has_returns)) << shown.out;
+  EXPECT_TRUE(std::any_of(rows.begin() + 9, rows.end(), has_returns)) << shown.out;
+  const auto refused = cli::run({"view", "--once", front, rear});
+  EXPECT_EQ(refused.code, 2);
+  EXPECT_NE(refused.err.find("add --merge"), std::string::npos) << refused.err;
+}
+
 }  // namespace g4_tool

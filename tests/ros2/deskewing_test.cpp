@@ -2,24 +2,19 @@
 // Scans that g4-ros2 filters and deskews, and what it reports where the motion is not known.
 #include <gmock/gmock.h>
 
-#include <array>
 #include <chrono>
 #include <csignal>
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
-#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "cli/program.hpp"
-#include "dds/bus.hpp"
 #include "diagnosis.hpp"
-#include "g4lidar/merge.hpp"
-#include "g4lidar/odometry_feed.hpp"
+#include "g4lidar/odometry_path.hpp"
 #include "lidar.hpp"
-#include "merger.hpp"
 #include "subscriber.hpp"
 #include "support/cloud_rows.hpp"
 #include "support/shaped_drive.hpp"
@@ -28,11 +23,6 @@ namespace ros2 {
 namespace {
 
 using g4lidar::deskewing;
-using g4lidar::mounted_scan;
-using g4lidar::mounting;
-using g4lidar::point;
-using g4lidar::scan_shaper;
-using g4lidar::stamped_pose;
 
 class DeskewedRobot : public cli::scratch {
  protected:
@@ -117,54 +107,6 @@ INSTANTIATE_TEST_SUITE_P(By, ShapedDrive,
                          ::testing::Values(std::pair("scans", deskewing::by_scans),
                                            std::pair("odometry", deskewing::by_path)),
                          [](const auto& of) { return std::string(of.param.first); });
-
-TEST_F(DeskewedRobot, MergedScansAreThoseOfTheLibrary_BitForBit) {
-  const g4lidar::test::shaped_drive drive(G4_DUMP_TOOL, path("."));
-  g4_tool::ros2_options options;
-  options.common.deskew = deskewing::by_scans;
-  options.merges = true;
-  const mounting front{{0.25, 0.125, 0.5}, false};
-  const mounting rear{{-0.5, 0.0, 3.0}, true};
-  // A second domain of this process, with the number of the first one on the network.
-  dds::network network = dds::read_network(210, "");
-  network.more += ",<CycloneDDS><Domain><Discovery><ExternalDomainId>" +
-                  std::to_string(test_domain::number()) +
-                  "</ExternalDomainId></Discovery></Domain></CycloneDDS>";
-  dds::bus bus(network);
-  g4_tool::merger merger(bus, options, {{"front", "", front}, {"rear", "", rear}});
-  bus.update();
-  subscriber<cloud_message> clouds(domain_, "/points", dds::point_cloud2, {.depth = 100});
-  ASSERT_TRUE(comes_true([&] { return merger.is_wanted(); }));
-  scan_shaper of_rear(g4lidar::test::drive_shaping());
-  std::vector<point> memory(8192);
-  int deskewed = 0;
-  // The rear lidar measures the same: at once before the front one, which leads.
-  g4lidar::test::shape_drive(
-      drive, false, deskewing::by_scans, [&](scan_shaper& ahead, const g4lidar::scan& scan) {
-        of_rear.shape(scan);
-        const g4_tool::scan_times when{scan.time_ns(), scan.duration_ns, 0};
-        merger.add(1, of_rear, {}, when);
-        merger.add(0, ahead, {}, when);
-        const std::array<mounted_scan, 2> lidars{
-            {{ahead.kept().points, front}, {of_rear.kept().points, rear}}};
-        const std::int64_t end_ns = scan.time_ns() + scan.duration_ns;
-        const auto twist = ahead.twist();
-        const g4lidar::merged all =
-            twist ? merge_scans(lidars, seen_from(inverse(front.pose), *twist), end_ns, memory)
-                  : merge_scans(lidars, std::span<const stamped_pose>{}, end_ns, memory);
-        deskewed += twist ? 1 : 0;
-        const std::string rows = g4lidar::test::rows_of(all.points, end_ns);
-        std::string got;
-        EXPECT_TRUE(comes_true([&] {
-          clouds.take([&](const cloud_message& cloud) {
-            got.assign(reinterpret_cast<const char*>(cloud.data._buffer), cloud.data._length);
-          });
-          return got.size() == rows.size();
-        })) << got.size();
-        ASSERT_TRUE(g4lidar::test::without_times(got) == rows) << scan.revolution;
-      });
-  EXPECT_GT(deskewed, 25);
-}
 
 TEST(OdometryPath, GoesOnForALittleWithTheLastVelocity) {
   constexpr std::int64_t ms = 1'000'000;

@@ -10,7 +10,7 @@
 #include <optional>
 #include <string>
 
-#include "io/source_reader.hpp"
+#include "g4lidar/lidar_service.hpp"
 #include "program.hpp"
 #include "scan_publisher.hpp"
 
@@ -20,39 +20,35 @@ using namespace g4_tool;
 
 /// g4-serve without its sockets. Clients read in the thread of the reader, so that each scan finds them as
 /// the one before it left them.
-class Served : public cli::scratch, public reader_listener {
+class Served : public cli::scratch, public g4lidar::service_sink {
  protected:
   /// Without waiting, until its end, or until read_all() returns false.
   void play(const std::string& source, bool loops, serve_options options = {}) {
     options.speed = 0;
     options.loops = loops;
-    scan_publisher publisher(options, {{"", source, options.common.mount}}, center_);
+    scan_publisher publisher(options, {{"", source, options.common.mount}}, center_, this);
     publisher_ = &publisher;
-    lidar_ = publisher.lidars().front().get();
-    source_reader from(lidar_->options(), lidar_->how_to_open(), *this);
-    lidar_->attach(from);
-    from.start();
+    publisher.start();
     std::unique_lock lock(mutex_);
     ended_.wait(lock, [this] { return is_over_; });
     lock.unlock();
-    from.stop();
-    EXPECT_EQ(from.failure(), nullptr);
+    publisher.stop();
+    EXPECT_FALSE(publisher.failure_of_all());
   }
   /// After each scan.
   virtual bool read_all() = 0;
 
-  void on_open(g4lidar::lidar& device) override { lidar_->on_open(device); }
-  void on_event(const lidar_event& event) override {
+  [[nodiscard]] g4lidar::service_demand wanted() const override { return {}; }
+  void on_event(std::size_t /*lidar*/, const lidar_event& /*what*/,
+                std::int64_t /*stamp_ns*/) override {
     ++events_;
-    lidar_->on_event(event);
   }
-  void on_state(reader_state state, const std::optional<error>& why) override {
-    lidar_->on_state(state, why);
+  void on_state(std::size_t /*lidar*/, reader_state state,
+                const std::optional<error>& /*why*/) override {
     if (state == reader_state::ended) end();
   }
-  void on_scan(const g4lidar::scan& scan) override {
+  void on_scan(const g4lidar::service_scan& /*made*/) override {
     if (is_over_) return;
-    lidar_->on_scan(scan);
     if (scans_++ % 6 == 0) publisher_->tick();
     if (!read_all()) end();
   }
@@ -66,7 +62,6 @@ class Served : public cli::scratch, public reader_listener {
   int events_ = 0;
   client_registry center_{"session", false, {.set = {}, .play = {}}, [] {}};
   scan_publisher* publisher_ = nullptr;
-  served_lidar* lidar_ = nullptr;
 
  private:
   std::mutex mutex_;

@@ -42,21 +42,16 @@ lidar_diagnostics::lidar_diagnostics(dds::bus& on, const ros2_options& options,
   if (!name.empty()) prefix_.append(name).append(" ");
 }
 
-void lidar_diagnostics::update(const source_reader& device, const scan_messages& messages,
-                               std::int64_t stamp_ns) {
+void lidar_diagnostics::update(const std::function<std::vector<diagnostic_status>()>& diagnose,
+                               const scan_messages& messages, std::int64_t stamp_ns) {
   const auto now = clock::now();
   if (!topic_ || now < due_ || stamp_ns == 0) return;
   due_ = now + diagnostics_interval;
   if (!topic_->is_wanted()) return;
-  auto statuses = statuses_of(device.stages(), device.reader().counts(), "");
-  statuses.insert(statuses.begin(), status_of(device.reader().status(), device.why()));
-  const std::string serial = statuses.front().hardware_id;
+  std::vector<diagnostic_status> statuses = diagnose();
   statuses.push_back(topics_.status(messages.counts()));
-  for (const auto& each : more_) statuses.push_back(each());
-  for (diagnostic_status& each : statuses) {
-    each.hardware_id = serial;
-    each.name.replace(0, program_name.size(), prefix_);
-  }
+  statuses.back().hardware_id = statuses.front().hardware_id;
+  for (diagnostic_status& each : statuses) each.name.replace(0, program_name.size(), prefix_);
   std::vector<std::uint8_t> message;
   put_diagnostic_array(statuses, stamp_ns, message);
   topic_->publish(message);

@@ -14,7 +14,6 @@
 
 #include "dds/bus.hpp"
 #include "g4lidar/diagnostics/diagnostic_message.hpp"
-#include "io/source_reader.hpp"
 #include "options.hpp"
 #include "scan_messages.hpp"
 
@@ -41,11 +40,10 @@ class lidar_diagnostics {
   lidar_diagnostics(dds::bus& on, const ros2_options& options, std::string_view name_space,
                     std::string_view name);
 
-  /// Adds a status to each message. Its name begins with "g4lidar: ", which is replaced by the name of the node.
-  void also_report(std::function<diagnostic_status()> what) { more_.push_back(std::move(what)); }
-  /// Publishes once a second, if there are subscribers. `stamp_ns`: the time since 1970; 0: unknown, nothing is
-  /// published.
-  void update(const source_reader& device, const scan_messages& messages, std::int64_t stamp_ns);
+  /// Publishes once a second, if there are subscribers: what `diagnose` gives, whose names begin with "g4lidar: ", which
+  /// is replaced by the name of the node. `stamp_ns`: the time since 1970; 0: unknown, nothing is published.
+  void update(const std::function<std::vector<diagnostic_status>()>& diagnose,
+              const scan_messages& messages, std::int64_t stamp_ns);
 
  private:
   using clock = std::chrono::steady_clock;
@@ -53,7 +51,6 @@ class lidar_diagnostics {
   std::string prefix_;                     // of the names of statuses: the node and the lidar
   std::unique_ptr<dds::publisher> topic_;  // null: off
   topic_report topics_;
-  std::vector<std::function<diagnostic_status()>> more_;
   clock::time_point due_{};
 };
 

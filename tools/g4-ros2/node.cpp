@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <exception>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -16,7 +15,6 @@
 #include "io/interrupt.hpp"
 #include "io/service_watch.hpp"
 #include "lidar_node.hpp"
-#include "merger.hpp"
 #include "node_announcement.hpp"
 #include "run_command.hpp"
 
@@ -35,17 +33,15 @@ class node {
       : options_(options),
         bus_(dds::read_network(options.transport.domain, options.transport.interface)) {
     const std::vector<named_source> lidars = sources_of(options_);
-    if (options_.merges) merger_.emplace(bus_, options_, lidars);
-    for (const named_source& each : lidars) {
-      lidars_.push_back(std::make_unique<lidar_node>(
-          bus_, options_, each, merger_ ? &*merger_ : nullptr, lidars_.size()));
-    }
-    if (merger_) {
-      for (auto& each : merger_->reports()) lidars_.front()->also_report(std::move(each));
+    if (options_.merges) {
+      nodes_.push_back(std::make_unique<lidar_node>(bus_, options_, lidars));
+    } else {
+      for (const named_source& each : lidars)
+        nodes_.push_back(std::make_unique<lidar_node>(bus_, options_, std::vector{each}));
     }
     if (const std::string name = run_topic(options_); name != "off") {
       run_.emplace(bus_, full_name(options_.name_space, name), [this](bool runs) {
-        for (const auto& each : lidars_) each->allow(runs);
+        for (const auto& each : nodes_) each->allow(runs);
       });
     }
     announcement_.emplace(bus_, options_.transport.announced,
@@ -54,7 +50,7 @@ class node {
 
   int run() {
     bus_.update();
-    for (const auto& each : lidars_) each->device().start();
+    for (const auto& each : nodes_) each->start();
     while (interrupt() == 0 && !limits_.is_over() && !has_ended()) {
       bus_.clear();
       if (const auto now = clock::now(); now >= network_due_) {
@@ -63,30 +59,40 @@ class node {
         network_due_ = now + network_interval;
       }
       if (run_) run_->update();
-      for (const auto& each : lidars_) each->update();
+      for (const auto& each : nodes_) each->update();
       report();
       static_cast<void>(wait_for_input(bus_.handle(), -1, clock::now() + update_interval));
     }
     service_.stopping();
-    const std::exception_ptr why = failure_of_any();
-    lidars_.clear();
+    const std::optional<failure> why = failure_of_any();
+    nodes_.clear();
     bus_.close();
-    if (why) std::rethrow_exception(why);
+    if (why) throw failure(*why);
     return exit_code_now();
   }
 
  private:
   /// Whether all lidars have ended.
   [[nodiscard]] bool has_ended() const {
-    return std::ranges::all_of(
-        lidars_, [](const auto& each) { return each->device().state() == reader_state::ended; });
+    bool is_over = true;
+    for_each_lidar([&](const lidar_node& each, std::size_t lidar) {
+      is_over = is_over && each.state(lidar) == reader_state::ended;
+    });
+    return is_over;
   }
 
-  [[nodiscard]] std::exception_ptr failure_of_any() const {
-    for (const auto& each : lidars_) {
-      if (auto why = each->device().failure()) return why;
+  [[nodiscard]] std::optional<failure> failure_of_any() const {
+    for (const auto& each : nodes_) {
+      if (auto why = each->failure_of_any()) return why;
     }
-    return nullptr;
+    return std::nullopt;
+  }
+
+  template <class Use>
+  void for_each_lidar(Use use) const {
+    for (const auto& each : nodes_) {
+      for (std::size_t lidar = 0; lidar < each->size(); ++lidar) use(*each, lidar);
+    }
   }
 
   /// Reports to systemd: ready even without a network, and alive with each turn.
@@ -95,17 +101,16 @@ class node {
     service_.alive();
     if (!service_.has_manager()) return;
     std::string text;
-    for (const auto& each : lidars_) {
-      text += fmt::format("{}{} {}", text.empty() ? "" : ", ", each->name_space(),
-                          name_of(each->device().state()));
-    }
+    for_each_lidar([&](const lidar_node& each, std::size_t lidar) {
+      text += fmt::format("{}{} {}", text.empty() ? "" : ", ", each.name_space(lidar),
+                          name_of(each.state(lidar)));
+    });
     service_.status(text);
   }
 
   const ros2_options& options_;
   dds::bus bus_;
-  std::optional<merger> merger_;
-  std::vector<std::unique_ptr<lidar_node>> lidars_;
+  std::vector<std::unique_ptr<lidar_node>> nodes_;
   std::optional<run_command> run_;
   std::optional<node_announcement> announcement_;
   time_limits limits_{options_.common.duration, 0ns};

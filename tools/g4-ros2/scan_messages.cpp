@@ -3,8 +3,6 @@
 
 #include <utility>
 
-#include "io/far_times.hpp"
-
 namespace g4_tool {
 
 std::unique_ptr<dds::publisher> publisher_of(dds::bus& on, std::string_view name_space,
@@ -27,29 +25,28 @@ scan_messages::scan_messages(dds::bus& on, const ros2_options& options, std::str
   points_ = publisher_of(on, name_space, options.topics.points, topic_of(dds::point_cloud2));
 }
 
-message_header scan_messages::header_of(const model& which, const scan_times& when) const {
-  return {.stamp_ns = sum_ns(when.first_ns, when.ahead_ns),
+message_header scan_messages::header_of(const service_scan& made) const {
+  return {.stamp_ns = made.stamp_ns(made.first_ns),
           .frame_id = frame_id_,
-          .duration_ns = when.duration_ns,
+          .duration_ns = made.duration_ns,
           .order = options_.order,
-          .model = &which};
+          .model = made.kept.model};
 }
 
-void scan_messages::publish_scan(const scan& for_grid, const grid_options& grid,
-                                 const scan_times& when) {
-  message_header header = header_of(*for_grid.model, when);
-  fill_laser_scan(for_grid, header, options_.bins.value_or(default_bins(*for_grid.model)), grid,
-                  ranges_, intensities_);
+void scan_messages::publish_scan(const service_scan& made) {
+  message_header header = header_of(made);
+  fill_laser_scan(made.for_grid, header, options_.bins.value_or(default_bins(*header.model)),
+                  made.grid, ranges_, intensities_);
   message_.clear();
   put_laser_scan(ranges_, header, message_);
   scan_->publish(message_);
 }
 
-void scan_messages::publish_points(const scan& kept, const scan_times& when) {
-  message_header header = header_of(*kept.model, when);
-  if (!kept.empty()) header.stamp_ns = sum_ns(cloud_time_ns(kept.points), when.ahead_ns);
+void scan_messages::publish_points(const service_scan& made) {
+  message_header header = header_of(made);
+  if (!made.kept.empty()) header.stamp_ns = made.stamp_ns(cloud_time_ns(made.kept.points));
   message_.clear();
-  put_point_cloud2(kept.points, header, message_);
+  put_point_cloud2(made.kept.points, header, message_);
   points_->publish(message_);
 }
 

@@ -11,9 +11,9 @@
 
 #include "dds/bus.hpp"
 #include "g4lidar/grid.hpp"
+#include "g4lidar/lidar_service.hpp"
 #include "g4lidar/message/ros_messages.hpp"
 #include "g4lidar/scan.hpp"
-#include "io/scan_merger.hpp"
 #include "options.hpp"
 
 namespace g4_tool {
@@ -27,10 +27,10 @@ class scan_messages {
   scan_messages(dds::bus& on, const ros2_options& options, std::string_view name_space,
                 std::string frame_id);
 
-  /// On /scan: scan_shaper::for_grid().
-  void publish_scan(const scan& for_grid, const grid_options& grid, const scan_times& when);
-  /// On /points: scan_shaper::kept().
-  void publish_points(const scan& kept, const scan_times& when);
+  /// On /scan: service_scan::for_grid.
+  void publish_scan(const service_scan& made);
+  /// On /points: service_scan::kept.
+  void publish_points(const service_scan& made);
   /// Whether somebody reads them. *Any thread.*
   [[nodiscard]] bool wants_scan() const { return scan_ && scan_->is_wanted(); }
   /// The same.
@@ -41,7 +41,7 @@ class scan_messages {
   [[nodiscard]] named_counts counts() const;
 
  private:
-  [[nodiscard]] message_header header_of(const model& which, const scan_times& when) const;
+  [[nodiscard]] message_header header_of(const service_scan& made) const;
 
   const ros2_options& options_;
   std::string frame_id_;

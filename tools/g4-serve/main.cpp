@@ -17,7 +17,6 @@
 #include "client_registry.hpp"
 #include "io/interrupt.hpp"
 #include "io/service_watch.hpp"
-#include "io/source_reader.hpp"
 #include "scan_publisher.hpp"
 #include "web_server.hpp"
 
@@ -46,11 +45,6 @@ class lidar_server {
                                     auto done) { publisher_.record(wanted, std::move(done)); }},
                   [this] { wake(); }),
         publisher_(options, lidars, registry_) {
-    for (const auto& each : publisher_.lidars()) {
-      readers_.push_back(
-          std::make_unique<source_reader>(each->options(), each->how_to_open(), *each));
-      each->attach(*readers_.back());
-    }
     server_ =
         std::make_unique<web_server>(options.address, options.port, options.origins, registry_);
     served_ = server_.get();
@@ -59,7 +53,7 @@ class lidar_server {
   lidar_server(const lidar_server&) = delete;
   lidar_server& operator=(const lidar_server&) = delete;
   ~lidar_server() {
-    for (const auto& each : readers_) each->stop();  // the motors first
+    publisher_.stop();  // the motors first
     served_ = nullptr;
     server_.reset();
   }
@@ -69,12 +63,12 @@ class lidar_server {
     using namespace std::chrono_literals;
     using clock = std::chrono::steady_clock;
     for (const std::string& url : urls_) logger::info(url + '\n');
-    for (const auto& each : readers_) each->start();
+    publisher_.start();
     time_limits limits(options_.common.duration, std::chrono::nanoseconds(0));
     clock::time_point due = clock::now();
     while (!limits.is_over()) {
       if (wait_for_input(-1, -1, std::min(due, limits.end())) == wake::interrupt) return;
-      if (const auto why = failure_of_all()) std::rethrow_exception(why);
+      if (const auto why = publisher_.failure_of_all()) throw failure(*why);
       report(publisher_.tick().state);
       due = std::max(due + 500ms, clock::now());
     }
@@ -83,12 +77,6 @@ class lidar_server {
  private:
   void wake() {
     if (web_server* const server = served_) server->wake();
-  }
-
-  /// The first failure if all lidars have one: what works is shown.
-  [[nodiscard]] std::exception_ptr failure_of_all() const {
-    const auto has_failed = [](const auto& each) { return each->failure() != nullptr; };
-    return std::ranges::all_of(readers_, has_failed) ? readers_.front()->failure() : nullptr;
   }
 
   void report(reader_state state) {
@@ -101,7 +89,6 @@ class lidar_server {
   const serve_options options_;
   client_registry registry_;
   scan_publisher publisher_;
-  std::vector<std::unique_ptr<source_reader>> readers_;
   std::unique_ptr<web_server> server_;
   std::atomic<web_server*> served_ = nullptr;
   std::vector<std::string> urls_;
@@ -109,7 +96,7 @@ class lidar_server {
 };
 
 int serve(const serve_options& options) {
-  lidar_server(options, served_sources(options)).run();
+  lidar_server(options, shown_sources(options.sources, options.mounts, options.merges)).run();
   return exit_code_now();
 }
 

@@ -16,8 +16,8 @@
 #include "g4lidar/background_reader.hpp"
 #include "g4lidar/diagnostics/diagnosis.hpp"
 #include "g4lidar/lidar.hpp"
+#include "g4lidar/lidar_service.hpp"
 #include "g4lidar/scan.hpp"
-#include "io/moving_scans.hpp"
 
 namespace g4_tool {
 

@@ -7,6 +7,7 @@
 #include <tuple>
 #include <utility>
 
+#include "g4lidar/source.hpp"
 #include "io/point_run.hpp"
 #include "verbs/verbs.hpp"
 

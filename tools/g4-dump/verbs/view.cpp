@@ -8,12 +8,14 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "cli/common_options.hpp"
+#include "cli/named_sources.hpp"
 #include "g4lidar/owned_scan.hpp"
 #include "io/interrupt.hpp"
 #include "io/output.hpp"
-#include "io/source_reader.hpp"
+#include "io/service_source.hpp"
 #include "verbs/verbs.hpp"
 #include "view/newest_scan.hpp"
 #include "view/picture.hpp"
@@ -47,6 +49,9 @@ std::optional<std::pair<int, int>> intensities_of(const scan& now) {
 
 struct view_job {
   shared_options common = std::make_shared<common_options>();
+  std::vector<std::string> sources{};  ///< "SOURCE", or "NAME=SOURCE".
+  std::vector<named_mounting> mounts{};
+  bool merges = false;
   lidar_options source{.playback = {.speed = 1}};
   view_settings settings{};
   std::optional<glyphs> how{};
@@ -57,24 +62,35 @@ struct view_job {
 
 class viewer {
  public:
-  explicit viewer(const view_job& job)
-      : job_(job), settings_(job.settings), reader_(*job.common, job.source, newest_) {
-    newest_.attach(reader_);
+  explicit viewer(const view_job& job) : job_(job), settings_(job.settings) {
+    std::vector<service_lidar> read;
+    for (const named_source& each : shown_sources(job.sources, job.mounts, job.merges)) {
+      common_options& options = options_.emplace_back(*job.common);
+      options.source = each.source;
+      options.mount = each.mount;
+      read.push_back(service_lidar_of(options, job.source));
+      read.back().name = each.name;
+      name_ +=
+          (name_.empty() ? "" : ", ") + (each.name.empty() ? "" : each.name + '=') + each.source;
+    }
+    service_options how = service_options_of(*job.common);
+    how.follows_motion = true;
+    service_ = make_service(std::move(read), std::move(how), {{&newest_, delivery::in_reader}});
     const blocked_signals handled_by_this_thread;
-    reader_.start();
+    value_of(service_->start());
   }
 
   int run() {
     {
       screen terminal(wants_color(STDOUT_FILENO));
-      while (!is_over_ && interrupt() == 0 && !reader_.failure() && !limits_.is_over()) {
+      while (!is_over_ && interrupt() == 0 && !failure_of_all() && !limits_.is_over()) {
         update();
         terminal.show(picture(terminal.columns(), terminal.rows()));
         wait(terminal);
       }
     }
-    reader_.stop();
-    if (const auto failure = reader_.failure()) std::rethrow_exception(failure);
+    service_->stop();
+    if (const auto why = failure_of_all()) throw failure(*why);
     return exit_code_now();
   }
 
@@ -82,13 +98,13 @@ class viewer {
     output out(job_.common->output);
     const auto until =
         clock::now() + (job_.common->duration > 0ns ? job_.common->duration : longest_wait);
-    while (!newest_.is_steady() && interrupt() == 0 && clock::now() < until && !reader_.failure() &&
-           reader_.state() != reader_state::ended) {
+    while (!newest_.is_steady() && interrupt() == 0 && clock::now() < until &&
+           service_->status(0).state != reader_state::ended) {
       newest_.wait(std::min(until, clock::now() + 100ms), interrupt_handle());
     }
     update();
-    reader_.stop();
-    if (const auto failure = reader_.failure()) std::rethrow_exception(failure);
+    service_->stop();
+    if (const auto why = failure_of_all()) throw failure(*why);
     if (interrupt() != 0) return exit_code_now();
     if (scan_.view().empty()) throw failure(exit_code::lost, "no revolution has come.");
     const canvas shown = picture(job_.columns, job_.rows);
@@ -98,6 +114,9 @@ class viewer {
   }
 
  private:
+  [[nodiscard]] std::optional<failure> failure_of_all() const {
+    return g4_tool::failure_of_all(*service_, [this](std::size_t i) { return options_[i]; });
+  }
   /// Takes the changes since the last call.
   void update() {
     std::string event;
@@ -113,19 +132,19 @@ class viewer {
     if (!event.empty()) facts_.event = event;
     if (const auto now = clock::now(); now >= facts_due_) {
       facts_due_ = now + facts_pause;
-      facts_.stages = reader_.stages();
+      facts_.stages = service_->stages(0);
     }
     trails_.show(settings_.radar, settings_.wants_map);
-    const lidar_counts counts = reader_.reader().counts();
+    const lidar_counts counts = service_->counts(0);
     const auto all = static_cast<double>(counts.stream.points + counts.samples_lost);
     facts_.lost_percent = all > 0 ? 100.0 * static_cast<double>(counts.samples_lost) / all : -1;
     facts_.checksum_errors =
         static_cast<std::int64_t>(counts.stream.skipped(skip_reason::bad_checksum));
     facts_.scans = static_cast<std::int64_t>(counts.scans);
-    const reader_status status = reader_.reader().status();
-    facts_.name = job_.common->source.empty() ? status.name : job_.common->source;
+    const reader_status status = service_->status(0);
+    facts_.name = name_.empty() ? status.name : name_;
     facts_.state = name_of(status.state);
-    facts_.why = reader_.why();
+    facts_.why = why_of(options_.front(), status.why, counts);
     if (const auto& who = status.information) {
       facts_.serial.assign(who->serial_digits.begin(), who->serial_digits.end());
     }
@@ -191,9 +210,7 @@ class viewer {
         settings_.is_frozen = !settings_.is_frozen;
         break;
       case ' ':
-        if (const auto where = reader_.reader().status().playback) {
-          reader_.reader().pause(!where->is_paused);
-        }
+        if (const auto where = service_->status(0).playback) service_->pause(!where->is_paused);
         break;
       case 'f':
         change_frame();
@@ -219,8 +236,10 @@ class viewer {
   const view_job& job_;
   glyphs glyphs_ = job_.how.value_or(screen::has_utf8() ? glyphs::braille : glyphs::ascii);
   view_settings settings_;
-  newest_scan newest_{*job_.common, job_.once};
-  source_reader reader_;
+  newest_scan newest_{job_.once};
+  std::vector<common_options> options_;  // of each lidar
+  std::string name_;                     // of the source
+  std::unique_ptr<lidar_service> service_;
   owned_scan scan_;
   std::optional<lidar_place> place_;
   trails trails_;
@@ -264,6 +283,9 @@ Up is ahead, or with --frame vendor the direction 0. Keys:
 The motion is known with --deskew, of a recording with odometry with --mount, and of a simulated
 robot. Then earlier returns stay at the walls, and the way driven is shown.
 
+Several lidars on one robot have names, and are joined with --merge; the numbers are those of the
+first one.
+
 The motor stops at the end. A lidar that is unplugged is awaited (--on-loss reconnect). With --once
 one revolution is printed as text, of the size that --size names, to any output.)";
 
@@ -286,12 +308,15 @@ verb make_view_verb() {
   return {
       .name = "view",
       .summary = "A radar in the terminal",
-      .arguments = {source_argument(common)},
+      .arguments = {named_source_arguments(
+          job->sources,
+          "The lidar, a recording, raw bytes, or sim:; NAME=SOURCE (the only lidar)")},
       .options = joined(
           zoom,
           frame_row("--frame", "What is up: ahead, or 0 degrees (robot)", settings.radar.frame),
           flag_row("--map", "The frame of the map, where the motion is known", settings.wants_map),
-          rows_of("Motion of the robot", {"deskew"}, common.deskew), mount_row(common),
+          rows_of("Motion of the robot", {"deskew"}, common.deskew), merge_row(job->merges),
+          named_mount_row(job->mounts),
           choice_row("--glyphs", "What dots are made of (braille where the locale is UTF-8)",
                      job->how,
                      choices<glyphs>{{"braille", glyphs::braille}, {"ascii", glyphs::ascii}}),
@@ -302,6 +327,9 @@ verb make_view_verb() {
       .examples = {{"g4-dump view", "The only lidar"},
                    {"g4-dump view sim:", "A simulated one"},
                    {"g4-dump view walk.mcap --loop", "A recording, again and again"},
+                   {"g4-dump view front=/dev/ttyUSB0 rear=/dev/ttyUSB1 --merge "
+                    "--mount front=0.2,0,0 --mount rear=-0.2,0,180",
+                    "Two lidars as one scan"},
                    {"g4-dump view --once sim: --glyphs ascii", "One picture as text"}},
       .run = [job] { return view(*job); }};
 }

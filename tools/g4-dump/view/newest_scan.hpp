@@ -1,32 +1,30 @@
 // SPDX-License-Identifier: MIT
-// What the thread of the reader gives to that of the screen.
+// What the threads of lidars give to that of the screen.
 #pragma once
 
 #include <chrono>
 #include <cmath>
+#include <cstdint>
 #include <mutex>
 #include <optional>
 #include <string>
 #include <utility>
 
+#include "g4lidar/lidar_service.hpp"
 #include "g4lidar/owned_scan.hpp"
-#include "io/moving_scans.hpp"
-#include "io/source_reader.hpp"
 #include "wake_descriptor.hpp"
 
 namespace g4_tool {
 
-class newest_scan final : public reader_listener {
+class newest_scan final : public service_sink {
  public:
-  /// `keeps`: the first one at a steady speed stays. Throws a failure.
-  newest_scan(const common_options& options, bool keeps) : scans_(options), keeps_(keeps) {}
-  /// Call it before `from` is started. `from` outlives this.
-  void attach(const source_reader& from) { source_ = &from; }
+  /// `keeps`: the first one at a steady speed stays.
+  explicit newest_scan(bool keeps) : keeps_(keeps) {}
 
-  void on_open(g4lidar::lidar& device) override { scans_.open(device, source_->simulation()); }
-  void on_scan(const scan& found) override {
-    scans_.add(found);
+  [[nodiscard]] service_demand wanted() const override { return {.kept = true}; }
+  void on_scan(const service_scan& made) override {
     {
+      const scan& found = made.kept;
       const std::lock_guard lock(mutex_);
       if ((!found.is_whole() && has_whole_) || (keeps_ && is_steady_)) return;
       has_whole_ = found.is_whole();
@@ -34,17 +32,19 @@ class newest_scan final : public reader_listener {
       const float frequency_hz = found.measured_frequency_hz();
       is_steady_ = has_whole_ && std::abs(frequency_hz - frequency_hz_) < 0.02F * frequency_hz;
       frequency_hz_ = frequency_hz;
-      scan_ = scans_.shaper().kept();
-      place_ = scans_.place();
+      scan_ = found;
+      place_ = made.place;
       is_new_ = true;
     }
     wake_.wake();
   }
-  void on_event(const lidar_event& what) override {
+  void on_event(std::size_t /*lidar*/, const lidar_event& what,
+                std::int64_t /*stamp_ns*/) override {
     const std::lock_guard lock(mutex_);
     event_ = name_of(what.what);
   }
-  void on_state(reader_state /*state*/, const std::optional<error>& /*why*/) override {
+  void on_state(std::size_t /*lidar*/, reader_state /*state*/,
+                const std::optional<error>& /*why*/) override {
     wake_.wake();
   }
 
@@ -67,8 +67,6 @@ class newest_scan final : public reader_listener {
 
  private:
   wake_descriptor wake_;
-  const source_reader* source_ = nullptr;
-  moving_scans scans_;  // of the thread of the reader
   mutable std::mutex mutex_;
   owned_scan scan_;
   std::optional<lidar_place> place_;

@@ -7,8 +7,8 @@
 #include <optional>
 #include <vector>
 
+#include "g4lidar/lidar_service.hpp"
 #include "g4lidar/scan.hpp"
-#include "io/moving_scans.hpp"
 #include "radar.hpp"
 
 namespace g4_tool {

@@ -98,4 +98,13 @@ std::vector<named_source> named_sources(const std::vector<std::string>& words,
   return made;
 }
 
+std::vector<named_source> shown_sources(const std::vector<std::string>& words,
+                                        const std::vector<named_mounting>& mounts, bool merges) {
+  std::vector<named_source> made = named_sources(words, mounts, merges);
+  if (merges) return made;
+  if (made.size() > 1) throw bad_value("several lidars are shown as one scan: add --merge");
+  made.front().name.clear();
+  return made;
+}
+
 }  // namespace g4_tool

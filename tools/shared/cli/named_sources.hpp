@@ -38,4 +38,9 @@ using named_mounting = std::pair<std::string, g4lidar::mounting>;
                                                       const std::vector<named_mounting>& mounts,
                                                       bool merges);
 
+/// The same for programs that show one scan: the only lidar, without its name, or those that are merged.
+[[nodiscard]] std::vector<named_source> shown_sources(const std::vector<std::string>& words,
+                                                      const std::vector<named_mounting>& mounts,
+                                                      bool merges);
+
 }  // namespace g4_tool

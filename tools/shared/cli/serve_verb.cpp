@@ -68,21 +68,6 @@ option_rows scan_rows(serve_options& options) {
 
 }  // namespace
 
-std::vector<named_source> served_sources(const serve_options& options) {
-  std::vector<named_source> made = named_sources(options.sources, options.mounts, options.merges);
-  if (options.merges) return made;
-  if (made.size() > 1) throw bad_value("several lidars are shown as one scan: add --merge");
-  made.front().name.clear();
-  return made;
-}
-
-serve_options options_of(const serve_options& options, const named_source& which) {
-  serve_options made = options;
-  made.common.source = which.source;
-  made.common.mount = which.mount;
-  return made;
-}
-
 std::string frame_id_of(const serve_options& options) {
   if (!options.frame_id.empty()) return options.frame_id;
   return options.merges ? "base_link" : "laser";

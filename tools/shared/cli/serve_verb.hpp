@@ -37,10 +37,6 @@ struct serve_options {
   bool loops = false;
 };
 
-/// The lidars to serve: one without a name or, with `merges`, at least one. Throws bad_value.
-[[nodiscard]] std::vector<named_source> served_sources(const serve_options& options);
-/// The options with the source and the mounting of a lidar.
-[[nodiscard]] serve_options options_of(const serve_options& options, const named_source& which);
 /// The frame of the messages: that of the lidar or, of merged scans, of the robot.
 [[nodiscard]] std::string frame_id_of(const serve_options& options);
 

@@ -86,7 +86,10 @@ std::string text_of(const maybe_answer& value) {
 }
 
 nlohmann::ordered_json json_of(const maybe_answer& value) {
-  if (!value) return nullptr;
+  return json_of(value ? g4lidar::value_of(*value) : parameter_value());
+}
+
+nlohmann::ordered_json json_of(const parameter_value& value) {
   return std::visit(
       [](const auto& known) -> nlohmann::ordered_json {
         if constexpr (std::is_same_v<decltype(known), const std::monostate&>)
@@ -94,7 +97,7 @@ nlohmann::ordered_json json_of(const maybe_answer& value) {
         else
           return known;
       },
-      g4lidar::value_of(*value));
+      value);
 }
 
 std::string firmware_of(const device_information& who) {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "g4lidar/lidar.hpp"
+#include "g4lidar/lidar_parameters.hpp"
 #include "g4lidar/setting_table.hpp"
 
 namespace g4_tool {
@@ -45,6 +46,7 @@ struct setting_change {
 
 /// 9000, 7.0, "cw", true; null where there is nothing.
 [[nodiscard]] nlohmann::ordered_json json_of(const maybe_answer& value);
+[[nodiscard]] nlohmann::ordered_json json_of(const g4lidar::parameter_value& value);
 
 /// "3.2"
 [[nodiscard]] std::string firmware_of(const g4lidar::device_information& who);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The times and flags of merged points: those of points whose motion is not known are their own.
-#include "io/scan_merger.hpp"
+#include "service/scan_merger.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,15 +8,10 @@
 #include <cstdint>
 #include <vector>
 
-namespace {
+#include "g4lidar/odometry_path.hpp"
 
-using g4_tool::merged_scan;
-using g4_tool::scan_merger;
-using g4_tool::scan_times;
-using g4lidar::deskewing;
-using g4lidar::point;
-using g4lidar::pose_2d;
-using g4lidar::stamped_odometry;
+namespace g4lidar::test {
+namespace {
 
 constexpr std::int64_t ms = 1'000'000;
 constexpr std::int64_t begin_ns = 5'000 * ms;
@@ -40,20 +35,22 @@ class MergedTimes : public testing::Test {
  protected:
   /// One revolution of each of two lidars at the same time, where `path` is known.
   std::vector<point> merged(deskewing how, const std::vector<stamped_odometry>& path = {}) {
-    scan_merger merger(how, {{"front", "", {}}, {"rear", "", {}}}, "in the test");
-    for (const stamped_odometry& each : path) merger.add(each);
+    scan_merger merger(how, {{"front", {}}, {"rear", {}}});
+    odometry_path poses;
+    for (const stamped_odometry& each : path) poses.add(each);
     const std::vector<point> points = revolution();
-    g4lidar::scan source{};
+    scan source{};
     source.points = points;
     source.duration_ns = turn_ns;
     std::vector<point> made;
     for (const std::size_t lidar : {1U, 0U}) {
-      g4lidar::scan_shaper shaper({.deskew = how, .for_merging = true});
+      scan_shaper shaper({.deskew = how, .for_merging = true});
       shaper.shape(source);
-      merger.add(lidar, shaper, {begin_ns, turn_ns, 0}, true, [&](const merged_scan& all) {
-        EXPECT_EQ(all.when.first_ns, reference_ns);
-        made.assign(all.kept.begin(), all.kept.end());
-      });
+      const auto all = merger.add(lidar, shaper, begin_ns, turn_ns, true,
+                                  [&](std::int64_t end_ns) { return poses.until(end_ns); });
+      if (!all) continue;
+      EXPECT_EQ(all->reference_ns, reference_ns);
+      made.assign(all->kept.begin(), all->kept.end());
     }
     return made;
   }
@@ -100,3 +97,4 @@ TEST_F(MergedTimes, WithoutDeskewing_AreTheirOwnWithoutAFlag) {
 }
 
 }  // namespace
+}  // namespace g4lidar::test

@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: MIT
-#include "place_tracker.hpp"
+#include "service/place_tracker.hpp"
 
 #include <utility>
 
-#include "io/far_times.hpp"
+#include "g4lidar/detail/saturating.hpp"
 
-namespace g4_tool {
+namespace g4lidar {
 namespace {
 
-using g4lidar::pose_2d;
-using g4lidar::twist_2d;
+using detail::saturating_sub;
 
 /// So long the frame is taken to keep its velocity where the scans do not show it; a longer gap begins another map.
 constexpr std::int64_t longest_gap_ns = 1'000'000'000;
@@ -32,14 +31,14 @@ std::optional<lidar_place> place_tracker::by_path(std::span<const g4lidar::stamp
 
 std::optional<lidar_place> place_tracker::by_twist(const std::optional<twist_2d>& twist,
                                                    std::int64_t time_ns) {
-  const bool continues =
-      last_ && time_ns > last_->time_ns && way_ns(last_->time_ns, time_ns) <= longest_gap_ns;
+  const bool continues = last_ && time_ns > last_->time_ns &&
+                         saturating_sub(time_ns, last_->time_ns) <= longest_gap_ns;
   if (!continues) last_.reset();
   const twist_2d before = velocity_;
   if (twist) {
     velocity_ = *twist;
     known_ns_ = time_ns;
-  } else if (!last_ || way_ns(known_ns_, time_ns) > longest_gap_ns) {
+  } else if (!last_ || saturating_sub(time_ns, known_ns_) > longest_gap_ns) {
     last_.reset();
     return std::nullopt;
   }
@@ -48,7 +47,7 @@ std::optional<lidar_place> place_tracker::by_twist(const std::optional<twist_2d>
     const twist_2d mean{(before.x_m_per_s + velocity_.x_m_per_s) / 2,
                         (before.y_m_per_s + velocity_.y_m_per_s) / 2,
                         (before.yaw_rad_per_s + velocity_.yaw_rad_per_s) / 2};
-    last_->pose = last_->pose * moved_by(mean, seconds_of(way_ns(last_->time_ns, time_ns)));
+    last_->pose = last_->pose * moved_by(mean, seconds_of(saturating_sub(time_ns, last_->time_ns)));
   } else {
     last_.emplace();
     ++map_;
@@ -57,4 +56,4 @@ std::optional<lidar_place> place_tracker::by_twist(const std::optional<twist_2d>
   return lidar_place{last_->pose, map_};
 }
 
-}  // namespace g4_tool
+}  // namespace g4lidar

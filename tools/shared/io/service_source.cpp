@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: MIT
+#include "service_source.hpp"
+
+#include <utility>
+
+#include "cli/logger.hpp"
+#include "cli/rows.hpp"
+#include "input.hpp"
+#include "output.hpp"
+#include "shape_files.hpp"
+#include "source.hpp"
+
+namespace g4_tool {
+
+service_lidar service_lidar_of(const common_options& options, const lidar_options& how) {
+  return {.options = options_for(options, how), .mount = options.mount};
+}
+
+service_options service_options_of(const common_options& options) {
+  service_options made{.mask = mask_in(options.mask), .deskew = options.deskew};
+  made.filters = {.filter = options.filter,
+                  .ignored = options.ignored,
+                  .marks = options.marks,
+                  .grid = options.grid};
+  made.filters.filter.in = options.frame;
+  return made;
+}
+
+std::unique_ptr<lidar_service> make_service(std::vector<service_lidar> lidars,
+                                            service_options options,
+                                            const std::vector<service_output>& outputs) {
+  if (lidars.size() > 32) throw bad_value("--merge joins at most 32 lidars");
+  return value_of(lidar_service::make(std::move(lidars), std::move(options), outputs));
+}
+
+std::optional<failure> failure_of(const common_options& options, const std::optional<error>& why,
+                                  const lidar_counts& counts) {
+  if (!why || *why == problem::cancelled) return std::nullopt;
+  const source_kind kind = kind_of_source(options.source);
+  const bool is_file = kind == source_kind::recording || kind == source_kind::raw_bytes;
+  if (*why != problem::end_of_input || !is_file) return failure_of(options, *why);
+  if (counts.stream.packets > 0) return std::nullopt;
+  return without_packets(counts.stream, counts.bytes, beginning_of(path_of_source(options.source)),
+                         in_quotes(options.source));
+}
+
+std::string why_of(const common_options& options, const std::optional<error>& why,
+                   const lidar_counts& counts) {
+  const auto failed = failure_of(options, why, counts);
+  return failed ? failed->what() : "";
+}
+
+std::optional<failure> final_failure_of(const common_options& options, const lidar_service& service,
+                                        std::size_t lidar) {
+  const reader_status now = service.status(lidar);
+  if (now.state != reader_state::ended) return std::nullopt;
+  return failure_of(options, now.why, service.counts(lidar));
+}
+
+void report_motion(bool is_known, const std::string& why) {
+  logger::info((is_known ? "points are deskewed: the motion is known" : why) + '\n');
+}
+
+}  // namespace g4_tool
