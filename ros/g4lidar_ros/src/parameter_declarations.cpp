@@ -136,6 +136,14 @@ void declare_parameters(rclcpp_lifecycle::LifecycleNode& node) {
   declare(node, "source", value(""),
           fixed("The lidar or the recording; empty: the only lidar",
                 "/dev/ttyUSB0, serial:NUMBER, usb:PATH, tcp:HOST:PORT, a file, or sim:"));
+  // As an empty array of a parameter file has no type.
+  const value nothing(std::vector<std::string>{""});
+  declare(node, "sources", nothing,
+          fixed("Two lidars or more whose scans are merged, in base_frame, instead of source",
+                "NAME=SOURCE each; no files"));
+  declare(
+      node, "mounts", nothing,
+      fixed("Where those of sources are on the robot", "NAME=X,Y,DEG or NAME=X,Y,DEG,down each"));
   declare(node, "model", value(""),
           fixed("Model; empty: the lidar is searched, or as recorded",
                 g4lidar::model_words() + "; x4! as with insist_on_model"));
