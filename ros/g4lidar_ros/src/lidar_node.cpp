@@ -73,14 +73,7 @@ LidarNode::LidarNode(const rclcpp::NodeOptions& options)
   timer_ = create_wall_timer(100ms, [this] { update(); });
 }
 
-LidarNode::~LidarNode() {
-  timer_.reset();
-  running_.reset();
-  bond_.reset();
-  diagnostics_.reset();
-  parameters_.reset();
-  session_.reset();
-}
+LidarNode::~LidarNode() = default;
 
 LidarNode::CallbackReturn LidarNode::on_configure(const rclcpp_lifecycle::State& /*previous*/) {
   try {

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "lidar_session.hpp"
 
-#include <algorithm>
-#include <cstdlib>
-#include <exception>
+#include <functional>
 #include <stdexcept>
 #include <utility>
 
@@ -16,8 +14,14 @@ using namespace std::chrono_literals;
 using g4lidar::reader_state;
 using g4lidar::source_kind;
 
-std::int64_t wall_now_ns() {
-  return std::chrono::nanoseconds(std::chrono::system_clock::now().time_since_epoch()).count();
+/// The time of stamps minus that of points, which is negative where the time of /clock is less than that since the
+/// machine was started. Nothing before the first /clock, if it is used.
+std::optional<std::int64_t> ahead_by(rclcpp::Clock& clock, std::int64_t wall_ahead_ns) {
+  if (!clock.ros_time_is_active()) return wall_ahead_ns;
+  const std::int64_t now_ns = clock.now().nanoseconds();
+  if (now_ns == 0) return std::nullopt;  // there is no /clock yet
+  const std::chrono::nanoseconds wall = std::chrono::system_clock::now().time_since_epoch();
+  return wall_ahead_ns + now_ns - wall.count();
 }
 
 /// So long a change of settings may take; the lidar stops and starts for it.
@@ -35,18 +39,23 @@ lidar_session::lidar_session(rclcpp_lifecycle::LifecycleNode& node, lidar_topics
     : node_(node),
       topics_(topics),
       options_(std::move(options)),
-      is_file_(is_file(options_.lidars.front().options.device)) {
+      is_file_(is_file(options_.lidars.front().options.device)),
+      motion_(node, topics, options_.motion) {
   const std::string& source = options_.lidars.front().options.device;
-  auto made = g4lidar::lidar_service::make(options_.lidars, connected(std::move(options_.service)),
-                                           {{this, g4lidar::delivery::in_reader}});
+  g4lidar::service_options& how = options_.service;
+  how.gives_points = is_file_ || g4lidar::has_simulated_robot(source);
+  how.stamp_clock = [clock = node.get_clock()](std::int64_t wall_ahead_ns) {
+    return ahead_by(*clock, wall_ahead_ns);
+  };
+  how.other_odometry = std::bind_front(&robot_motion::take, &motion_);
+  constexpr auto by = g4lidar::delivery::in_reader;
+  auto made =
+      g4lidar::lidar_service::make(options_.lidars, std::move(how), {{&motion_, by}, {this, by}});
   if (!made) throw std::invalid_argument(made.error().message());
   service_ = std::move(*made);
   if (const std::string wrong = service_->change_now(0, options_.filters); !wrong.empty())
     throw std::invalid_argument(wrong);
-  for (const g4lidar::service_lidar& each : options_.lidars)
-    prefixes_.push_back(each.name.empty() ? "" : each.name + ": ");
-  motion_ = std::make_unique<robot_motion>(node, topics, options_.motion, options_.frame_id,
-                                           service_->has_odometry());
+  motion_.connect(options_.frame_id, service_->has_odometry());
   if (!topics.clock && g4lidar::kind_of_source(source) == source_kind::recording) {
     topics.clock = std::make_unique<counted_publisher<rosgraph_msgs::msg::Clock>>(
         node, "/clock", rclcpp::QoS(10).reliable());
@@ -71,24 +80,9 @@ lidar_session::~lidar_session() {
   service_->stop();
 }
 
-g4lidar::service_options lidar_session::connected(g4lidar::service_options how) {
-  how.gives_points =
-      is_file_ || g4lidar::has_simulated_robot(options_.lidars.front().options.device);
-  how.stamp_clock = [this](std::int64_t wall_ahead_ns) { return ahead_ns(wall_ahead_ns); };
-  how.other_odometry = [this](g4lidar::odometry_path& into, const g4lidar::scan& whole,
-                              std::int64_t ahead_ns) {
-    guard([&] { motion_->take(into, whole, ahead_ns); });
-  };
-  return how;
-}
-
-template <class Call>
-void lidar_session::guard(Call call) const noexcept {
-  try {
-    call();
-  } catch (const std::exception& failure) {
-    RCLCPP_ERROR_THROTTLE(node_.get_logger(), *node_.get_clock(), 5000, "%s", failure.what());
-  }
+std::string lidar_session::named(std::size_t lidar, const std::string& text) const {
+  const std::string& name = options_.lidars[lidar].name;
+  return name.empty() ? text : name + ": " + text;
 }
 
 template <class Condition>
@@ -142,7 +136,7 @@ std::string lidar_session::change(std::size_t lidar,
     if (*reply) why_not = **reply;
     return reply->has_value();
   });
-  return why_not.empty() ? why_not : prefixes_[lidar] + why_not;
+  return why_not.empty() ? why_not : named(lidar, why_not);
 }
 
 std::string lidar_session::change(const std::vector<g4lidar::named_value>& wanted) {
@@ -190,17 +184,9 @@ std::optional<g4lidar::error> lidar_session::failure() const {
   return why && is_problem(*why) ? why : std::nullopt;
 }
 
-std::optional<std::int64_t> lidar_session::ahead_ns(std::int64_t wall_ahead_ns) const {
-  const rclcpp::Clock::SharedPtr clock = node_.get_clock();
-  if (!clock->ros_time_is_active()) return wall_ahead_ns;
-  const std::int64_t now_ns = clock->now().nanoseconds();
-  if (now_ns == 0) return std::nullopt;  // there is no /clock yet
-  return wall_ahead_ns + now_ns - wall_now_ns();
-}
-
 g4lidar::service_demand lidar_session::wanted() const {
   g4lidar::service_demand made{.for_grid = false, .kept = false, .runs = !is_standby_};
-  guard([&] {
+  guard(node_, [&] {
     made.for_grid = topics_.scans.is_wanted();
     made.kept = topics_.clouds.is_wanted();
   });
@@ -208,36 +194,18 @@ g4lidar::service_demand lidar_session::wanted() const {
 }
 
 void lidar_session::on_open(std::size_t lidar, g4lidar::lidar& device) {
-  RCLCPP_INFO(node_.get_logger(), "%sopened %s", prefixes_[lidar].c_str(),
-              std::string(device.name()).c_str());
+  RCLCPP_INFO(node_.get_logger(), "%s",
+              named(lidar, "opened " + std::string(device.name())).c_str());
 }
 
 void lidar_session::on_values(std::size_t lidar, const std::string& refused) {
-  if (!refused.empty())
-    RCLCPP_WARN(node_.get_logger(), "%s%s", prefixes_[lidar].c_str(), refused.c_str());
+  if (!refused.empty()) RCLCPP_WARN(node_.get_logger(), "%s", named(lidar, refused).c_str());
   is_news_ = true;
-}
-
-void lidar_session::on_odometry(const g4lidar::stamped_odometry& now, std::int64_t stamp_ns) {
-  guard([&] { motion_->publish(now, stamp_ns); });
-}
-
-void lidar_session::on_time(std::size_t /*lidar*/, std::int64_t stamp_ns) {
-  constexpr std::int64_t clock_step_ns = 10'000'000;
-  guard([&] {
-    if (!topics_.clock || !topics_.clock->is_wanted() ||
-        std::abs(stamp_ns - clock_ns_) < clock_step_ns)
-      return;
-    clock_ns_ = stamp_ns;
-    auto made = std::make_unique<rosgraph_msgs::msg::Clock>();
-    made->clock = rclcpp::Time(stamp_ns);
-    topics_.clock->publish(std::move(made));
-  });
 }
 
 void lidar_session::on_scan(const g4lidar::service_scan& made) {
   if (made.kept.is_piece()) return;
-  guard([&] {
+  guard(node_, [&] {
     g4lidar::message_header header{.stamp_ns = made.stamp_ns(made.first_ns),
                                    .frame_id = options_.frame_id,
                                    .duration_ns = made.duration_ns,
@@ -256,15 +224,15 @@ void lidar_session::on_scan(const g4lidar::service_scan& made) {
 
 void lidar_session::on_event(std::size_t lidar, const g4lidar::lidar_event& what,
                              std::int64_t /*stamp_ns*/) {
-  RCLCPP_INFO(node_.get_logger(), "%sevent: %s", prefixes_[lidar].c_str(),
-              std::string(g4lidar::name_of(what.what)).c_str());
+  RCLCPP_INFO(node_.get_logger(), "%s",
+              named(lidar, "event: " + std::string(g4lidar::name_of(what.what))).c_str());
 }
 
 void lidar_session::on_state(std::size_t lidar, reader_state state,
                              const std::optional<g4lidar::error>& why) {
   const bool is_bad = why && is_problem(*why);
   const std::string text =
-      prefixes_[lidar] + std::string(name_of(state)) + (is_bad ? ": " + why->message() : "");
+      named(lidar, std::string(name_of(state)) + (is_bad ? ": " + why->message() : ""));
   const rclcpp::Logger logger = node_.get_logger();
   if (is_bad && state == reader_state::ended)
     RCLCPP_ERROR(logger, "%s", text.c_str());

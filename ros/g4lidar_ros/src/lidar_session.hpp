@@ -73,19 +73,12 @@ class lidar_session final : private g4lidar::service_sink {
   void on_open(std::size_t lidar, g4lidar::lidar& device) override;
   void on_values(std::size_t lidar, const std::string& refused) override;
   void on_scan(const g4lidar::service_scan& made) override;
-  void on_odometry(const g4lidar::stamped_odometry& now, std::int64_t stamp_ns) override;
-  void on_time(std::size_t lidar, std::int64_t stamp_ns) override;
   void on_event(std::size_t lidar, const g4lidar::lidar_event& what,
                 std::int64_t stamp_ns) override;
   void on_state(std::size_t lidar, g4lidar::reader_state state,
                 const std::optional<g4lidar::error>& why) override;
-  template <class Call>
-  void guard(Call call) const noexcept;
-  /// The options of the service for this node.
-  [[nodiscard]] g4lidar::service_options connected(g4lidar::service_options how);
-  /// The time of stamps minus that of points, which is negative where the time of /clock is less than that since the
-  /// machine was started. Nothing before the first /clock, if it is used.
-  [[nodiscard]] std::optional<std::int64_t> ahead_ns(std::int64_t wall_ahead_ns) const;
+  /// A text about a lidar, with its name if there are several.
+  [[nodiscard]] std::string named(std::size_t lidar, const std::string& text) const;
   /// Changes those of one lidar.
   [[nodiscard]] std::string change(std::size_t lidar,
                                    const std::vector<g4lidar::named_value>& wanted);
@@ -102,15 +95,13 @@ class lidar_session final : private g4lidar::service_sink {
   lidar_topics& topics_;
   session_options options_;
   const bool is_file_;
-  std::vector<std::string> prefixes_;  // of texts about the lidars
-  std::int64_t clock_ns_ = 0;          // as published
+  robot_motion motion_;
   std::atomic<bool> is_standby_ = false;
   std::atomic<bool> is_news_ = false;
   std::mutex mutex_;
   std::condition_variable
       changed_;  // the state of a lidar, a change of its values, or the next one
   std::atomic<bool> is_ending_ = false;
-  std::unique_ptr<robot_motion> motion_;
   rclcpp::PreShutdownCallbackHandle before_shutdown_;
   std::unique_ptr<g4lidar::lidar_service> service_;  // its threads end first
 };

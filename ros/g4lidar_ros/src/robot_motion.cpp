@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdlib>
 #include <tuple>
 #include <utility>
 
@@ -39,36 +40,33 @@ geometry_msgs::msg::TransformStamped transform_of(std::int64_t stamp_ns, const s
 
 }  // namespace
 
-robot_motion::robot_motion(rclcpp_lifecycle::LifecycleNode& node, lidar_topics& topics,
-                           const motion_options& options, const std::string& frame_id,
-                           bool has_odometry)
-    : node_(node), topics_(topics), options_(options) {
+void robot_motion::connect(const std::string& frame_id, bool has_odometry) {
   if (has_odometry) {
-    if (!topics.odometry)
-      topics.odometry = std::make_unique<counted_publisher<nav_msgs::msg::Odometry>>(
-          node, "odom", rclcpp::QoS(5).reliable());
-    tf_ = std::make_unique<tf2_ros::TransformBroadcaster>(node);
+    if (!topics_.odometry)
+      topics_.odometry = std::make_unique<counted_publisher<nav_msgs::msg::Odometry>>(
+          node_, "odom", rclcpp::QoS(5).reliable());
+    tf_ = std::make_unique<tf2_ros::TransformBroadcaster>(node_);
   }
-  if (options.mount) {
-    const bool is_down = options.mount->upside_down != options.is_turned;
+  if (options_.mount) {
+    const bool is_down = options_.mount->upside_down != options_.is_turned;
     // Within a process, Jazzy keeps nothing for the late subscribers of other processes.
-    rclcpp::PublisherOptions options_of_place;
-    options_of_place.use_intra_process_comm = rclcpp::IntraProcessSetting::Disable;
+    rclcpp::PublisherOptions how;
+    how.use_intra_process_comm = rclcpp::IntraProcessSetting::Disable;
     place_ = std::make_unique<tf2_ros::StaticTransformBroadcaster>(
-        node, tf2_ros::StaticBroadcasterQoS(), options_of_place);
+        node_, tf2_ros::StaticBroadcasterQoS(), how);
     place_->sendTransform(
-        transform_of(0, options.base_frame, frame_id, {options.mount->pose, is_down}));
+        transform_of(0, options_.base_frame, frame_id, {options_.mount->pose, is_down}));
   }
   if (has_odometry) return;
-  if (options.from == motion_source::odometry) subscribe();
-  if (options.from == motion_source::tf) {
-    buffer_ = std::make_unique<tf2_ros::Buffer>(node.get_clock());
+  if (options_.from == motion_source::odometry) subscribe();
+  if (options_.from == motion_source::tf) {
+    buffer_ = std::make_unique<tf2_ros::Buffer>(node_.get_clock());
     // Subscriptions of this node, so that its remappings are used, in a thread of their own. Those of Humble cannot be
     // transient local within a process.
     auto fixed = tf2_ros::detail::get_default_transform_listener_static_sub_options();
     fixed.use_intra_process_comm = rclcpp::IntraProcessSetting::Disable;
     listener_ = std::make_unique<tf2_ros::TransformListener>(
-        *buffer_, &node, true, tf2_ros::DynamicListenerQoS(), tf2_ros::StaticListenerQoS(),
+        *buffer_, &node_, true, tf2_ros::DynamicListenerQoS(), tf2_ros::StaticListenerQoS(),
         tf2_ros::detail::get_default_transform_listener_sub_options(), fixed);
   }
 }
@@ -94,6 +92,23 @@ void robot_motion::subscribe() {
       "odom", rclcpp::QoS(100).best_effort(), take, how);
 }
 
+void robot_motion::on_odometry(const g4lidar::stamped_odometry& now, std::int64_t stamp_ns) {
+  guard(node_, [&] { publish(now, stamp_ns); });
+}
+
+void robot_motion::on_time(std::size_t /*lidar*/, std::int64_t stamp_ns) {
+  constexpr std::int64_t clock_step_ns = 10'000'000;
+  guard(node_, [&] {
+    if (!topics_.clock || !topics_.clock->is_wanted() ||
+        std::abs(stamp_ns - clock_ns_) < clock_step_ns)
+      return;
+    clock_ns_ = stamp_ns;
+    auto made = std::make_unique<rosgraph_msgs::msg::Clock>();
+    made->clock = rclcpp::Time(stamp_ns);
+    topics_.clock->publish(std::move(made));
+  });
+}
+
 void robot_motion::publish(const g4lidar::stamped_odometry& at, std::int64_t stamp_ns) {
   if (topics_.odometry->is_wanted()) {
     auto made = std::make_unique<nav_msgs::msg::Odometry>();
@@ -114,8 +129,10 @@ void robot_motion::publish(const g4lidar::stamped_odometry& at, std::int64_t sta
 
 void robot_motion::take(g4lidar::odometry_path& into, const g4lidar::scan& whole,
                         std::int64_t ahead_ns) {
-  if (subscription_) take_subscribed(into, ahead_ns);
-  if (buffer_) take_transforms(into, whole, ahead_ns);
+  guard(node_, [&] {
+    if (subscription_) take_subscribed(into, ahead_ns);
+    if (buffer_) take_transforms(into, whole, ahead_ns);
+  });
 }
 
 void robot_motion::take_subscribed(g4lidar::odometry_path& into, std::int64_t ahead_ns) {

@@ -16,8 +16,7 @@
 #include <nav_msgs/msg/odometry.hpp>
 #include <rclcpp_lifecycle/lifecycle_node.hpp>
 
-#include "g4lidar/odometry_path.hpp"
-#include "g4lidar/scan.hpp"
+#include "g4lidar/lidar_service.hpp"
 #include "topics.hpp"
 
 namespace g4lidar_ros {
@@ -33,19 +32,23 @@ struct motion_options {
   bool is_turned = false;                  ///< The frame of the scans has z down.
 };
 
-/// One thread at a time, but for construction.
-class robot_motion {
+/// As a sink, publishes the odometry and the time that the source states. In the thread of a lidar, but for the first two.
+class robot_motion final : public g4lidar::service_sink {
  public:
-  /// Of scans whose frame is `frame_id`. `has_odometry`: the source states the motion, which gets topics.
   robot_motion(rclcpp_lifecycle::LifecycleNode& node, lidar_topics& topics,
-               const motion_options& options, const std::string& frame_id, bool has_odometry);
+               const motion_options& options)
+      : node_(node), topics_(topics), options_(options) {}
+  /// Makes what it needs of ROS, for scans whose frame is `frame_id`. `has_odometry`: the source states the motion.
+  void connect(const std::string& frame_id, bool has_odometry);
 
-  /// Publishes what the source states.
-  void publish(const g4lidar::stamped_odometry& at, std::int64_t stamp_ns);
+  [[nodiscard]] g4lidar::service_demand wanted() const override { return {}; }
+  void on_odometry(const g4lidar::stamped_odometry& now, std::int64_t stamp_ns) override;
+  void on_time(std::size_t lidar, std::int64_t stamp_ns) override;
   /// Adds what others state, until the end of a scan. `ahead_ns`: the clock of stamps minus that of the points.
   void take(g4lidar::odometry_path& into, const g4lidar::scan& whole, std::int64_t ahead_ns);
 
  private:
+  void publish(const g4lidar::stamped_odometry& at, std::int64_t stamp_ns);
   void subscribe();
   void take_subscribed(g4lidar::odometry_path& into, std::int64_t ahead_ns);
   void take_transforms(g4lidar::odometry_path& into, const g4lidar::scan& whole,
@@ -54,6 +57,7 @@ class robot_motion {
   rclcpp_lifecycle::LifecycleNode& node_;
   lidar_topics& topics_;
   const motion_options options_;
+  std::int64_t clock_ns_ = 0;  // as published
   std::unique_ptr<tf2_ros::TransformBroadcaster> tf_;
   std::unique_ptr<tf2_ros::StaticTransformBroadcaster> place_;
   std::mutex mutex_;                                   // protects the next one

@@ -14,7 +14,7 @@ import launch_testing.asserts
 from diagnostic_msgs.msg import DiagnosticArray
 from launch_ros.actions import Node
 from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
-from rcl_interfaces.srv import GetParameters, SetParameters
+from rcl_interfaces.srv import GetParameters, SetParametersAtomically
 from sensor_msgs.msg import LaserScan, PointCloud2
 
 sys.path.insert(0, os.path.dirname(__file__))
@@ -41,11 +41,11 @@ def source(name):
 def generate_test_description():
     parameters = {"sources": [source(name) for name in MOUNTS], "autostart": True, "frame_id": "unused",
                   "mounts": [f"{name}={mount}" for name, mount in MOUNTS.items()]}
-    return launch.LaunchDescription([
-        Node(package="g4lidar_ros", executable="lidar_node", name="g4lidar", namespace="merged", output="screen",
-             parameters=[parameters]),
-        launch_testing.actions.ReadyToTest(),
-    ])
+    # An X2 takes no settings.
+    mixed = {"sources": [source("front"), "rear=sim:?model=x2"], "autostart": True}
+    nodes = [Node(package="g4lidar_ros", executable="lidar_node", name="g4lidar", namespace=name, output="screen",
+                  parameters=[values]) for name, values in (("merged", parameters), ("mixed", mixed))]
+    return launch.LaunchDescription([*nodes, launch_testing.actions.ReadyToTest()])
 
 
 def points_of(cloud):
@@ -59,15 +59,16 @@ class TestMerging(unittest.TestCase):
     def tearDown(self):
         self.watcher.close()
 
-    def set_frequency(self, hertz):
-        value = ParameterValue(type=ParameterType.PARAMETER_DOUBLE, double_value=hertz)
-        request = SetParameters.Request(parameters=[Parameter(name="frequency", value=value)])
-        return self.watcher.call(SetParameters, "/merged/g4lidar/set_parameters", request).results[0]
+    def set(self, node, **values):
+        """All or none of these numbers."""
+        parameters = [Parameter(name=name, value=ParameterValue(type=ParameterType.PARAMETER_DOUBLE, double_value=value))
+                      for name, value in values.items()]
+        request = SetParametersAtomically.Request(parameters=parameters)
+        return self.watcher.call(SetParametersAtomically, f"/{node}/g4lidar/set_parameters_atomically", request).result
 
-    def frequencies(self):
-        """That which is wanted, and that which both lidars have."""
-        request = GetParameters.Request(names=["frequency", "device.frequency"])
-        values = self.watcher.call(GetParameters, "/merged/g4lidar/get_parameters", request).values
+    def get(self, node, *names):
+        request = GetParameters.Request(names=names)
+        values = self.watcher.call(GetParameters, f"/{node}/g4lidar/get_parameters", request).values
         return [each.double_value for each in values]
 
     def test_the_cloud_has_the_walls_of_both(self):
@@ -110,15 +111,36 @@ class TestMerging(unittest.TestCase):
         self.assertLessEqual({"scans_without_front", "scans_without_rear"}, set(lost()))
 
     def test_settings_are_those_of_both(self):
-        self.assertTrue(support.wait_for(lambda: self.frequencies()[1] == 7.0), self.frequencies())
-        done = self.set_frequency(9.0)
+        names = ("frequency", "device.frequency")
+        self.assertTrue(support.wait_for(lambda: self.get("merged", *names) == [0.0, 7.0]), self.get("merged", *names))
+        done = self.set("merged", frequency=9.0)
         self.assertTrue(done.successful, done.reason)
         scans = self.watcher.collect(LaserScan, "/merged/scan")
         self.assertTrue(support.wait_for(lambda: scans and abs(scans[-1].scan_time - 1 / 9.0) < 0.005))
-        self.assertTrue(support.wait_for(lambda: self.frequencies() == [9.0, 9.0]), self.frequencies())
-        self.assertFalse(self.set_frequency(14.0).successful)  # a G4 has 5 to 12 Hz
-        self.assertEqual(self.frequencies(), [9.0, 9.0])
-        self.assertTrue(self.set_frequency(7.0).successful)
+        self.assertTrue(support.wait_for(lambda: self.get("merged", *names) == [9.0, 9.0]), self.get("merged", *names))
+        self.assertFalse(self.set("merged", frequency=14.0).successful)  # a G4 has 5 to 12 Hz
+        self.assertEqual(self.get("merged", *names), [9.0, 9.0])
+        self.assertTrue(self.set("merged", frequency=7.0).successful)
+
+    def test_what_one_of_them_refuses_is_undone(self):
+        messages = self.watcher.collect(DiagnosticArray, "/diagnostics")
+
+        def front():
+            """The frequency of the first lidar, Hz."""
+            found = [pair.value for message in list(messages) for each in message.status for pair in each.values
+                     if each.name == "/mixed/g4lidar: front state" and pair.key == "frequency"]
+            return float(found[-1]) if found else None
+        self.assertTrue(support.wait_for(lambda: front() == 7.0), front())
+        refused = self.set("mixed", frequency=9.0, range_max=1.5)
+        self.assertFalse(refused.successful)
+        self.assertTrue(refused.reason.startswith("rear: "), refused.reason)
+        self.assertEqual(self.get("mixed", "frequency", "range_max"), [0.0, 100.0])
+        scans = self.watcher.collect(LaserScan, "/mixed/scan")
+        del messages[:]
+        self.assertTrue(support.wait_for(lambda: front() is not None and len(scans) > 2))
+        self.assertEqual(front(), 7.0)
+        self.assertAlmostEqual(scans[-1].scan_time, 1 / 7.0, delta=0.01)
+        self.assertGreater(scans[-1].range_max, 1.6)
 
 
 @launch_testing.post_shutdown_test()

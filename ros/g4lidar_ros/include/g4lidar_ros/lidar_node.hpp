@@ -48,9 +48,9 @@ class LidarNode : public rclcpp_lifecycle::LifecycleNode {  // NOLINT(readabilit
   /// `by`: who wants it, for the log.
   void allow(bool runs, const std::string& by);
 
-  std::unique_ptr<node_parameters> parameters_;
-  std::unique_ptr<lidar_topics> topics_;    // since the first configure
+  std::unique_ptr<lidar_topics> topics_;    // since the first configure; outlives the next ones
   std::shared_ptr<lidar_session> session_;  // null unless it is configured
+  std::unique_ptr<node_parameters> parameters_;
   std::unique_ptr<node_diagnostics> diagnostics_;
   std::vector<rclcpp::ServiceBase::SharedPtr> services_;
   rclcpp::SubscriptionBase::SharedPtr running_;
