@@ -30,6 +30,7 @@ struct filter_settings {
 /// | name | text |
 /// |---|---|
 /// | `range` | the ranges that are kept, m: `0.28:16` |
+/// | `range_min`, `range_max` | the least and the greatest one; whether they are in order is not checked |
 /// | `fov` | the directions that are kept, degrees in the frame of the filter: `-90:90` |
 /// | `ignore` | directions that are left out, with spaces between them: `30:40 90:100`; `off` or nothing: none |
 /// | `speckle`, `edges`, `near` | `off`, `on` or nothing, or limits: `window=2,count=1` |

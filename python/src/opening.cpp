@@ -19,6 +19,7 @@
 
 #include "abandonable.hpp"
 #include "g4lidar/discovery.hpp"
+#include "g4lidar/option_table.hpp"
 #include "g4lidar/source.hpp"
 #include "g4lidar/transport/connector.hpp"
 #include "g4lidar/transport/serial_port.hpp"
@@ -113,6 +114,12 @@ live_lidar* open_lidar(const device_name& device, lidar_options options,
   return new live_lidar(*std::move(opened), std::move(on));
 }
 
+/// An option by its name. Raises BadOption.
+void take(lidar_options& into, const char* name, const parameter_value& value) {
+  const std::string wrong = set_option(into, *find_parameter(name), value);
+  if (!wrong.empty()) raise_bad_option(std::string(name) + ": " + wrong);
+}
+
 template <class... Wanted>
 live_lidar* open_by_keywords(
     const device_name& device, std::uint32_t baud, const Wanted&... wanted, bool reconnect,
@@ -122,12 +129,12 @@ live_lidar* open_by_keywords(
     std::optional<double> zero_angle, const std::optional<path_text>& record, bool overwrite,
     double device_wait, bool listen_only, bool insist_on_model, bool leave_dtr) {
   lidar_options options;
-  options.model = model_of(model);
+  if (model) take(options, "model", *model);
   options.baud = baud;
   for (const answer& value : values_of(wanted...)) set_option(options, value);
   options.reconnect = reconnect;
   options.listen_only = listen_only;
-  options.insist_on_model = insist_on_model;
+  options.insist_on_model |= insist_on_model;
   options.leave_dtr = leave_dtr;
   options.partial_scans = partial_scans;
   options.tuning.answer_time = in_milliseconds(answer_time);
@@ -143,7 +150,7 @@ live_lidar* open_by_keywords(
   options.playback.from_ns = in_ns(begin);
   if (end) options.playback.to_ns = in_ns(*end);
   options.raw_sample_rate_hz = raw_sample_rate_hz;
-  if (zero_angle) options.zero_angle = zero_angle_from(*zero_angle, options.model);
+  if (zero_angle) take(options, "zero_angle", *zero_angle);
   return open_lidar(device, options, record, overwrite);
 }
 
@@ -225,8 +232,42 @@ void bind_discovery(nb::module_& module) {
       "USB bridge of a G4, unless `probe_all_ports` is set.");
 }
 
+/// What open() does, with its options as the table of the library describes them.
+std::string text_of_open() {
+  std::string made =
+      "Opens a lidar and queries its identity; a device that is scanning is stopped first. "
+      "`device`: '' for the only lidar; a path; 'serial:2021101000070073' (the number of the "
+      "lidar); 'usb:1-1.4'; 'tcp:host:port'; a recording; 'file:PATH' (a recording, or raw bytes "
+      "of a port); 'sim:?seed=7' (a simulated lidar in real time); a Simulator.\n\n"
+      "Settings that are given are set at each start; None leaves them as the device has them: see "
+      "Lidar.set(). All times are in seconds. One that the source cannot use is refused:\n\n";
+  for (const parameter& each : all_parameters()) {
+    if (!each.is_of(option_door::python)) continue;
+    const double unit = each.unit == "ms" ? 1e-3 : each.unit == "ns" ? 1e-9 : 1.0;
+    parameter shown = each;
+    if (unit != 1.0) shown.unit = "seconds";
+    const std::string name =
+        each.setting != nullptr ? keyword_of(*each.setting) : std::string(each.name);
+    made.append("- `").append(name).append("`: ").append(description_of(shown));
+    if (const auto [least, most, step] = each.range; least < most)
+      made.append(" (")
+          .append(nb::str(nb::float_(least * unit)).c_str())
+          .append(" to ")
+          .append(nb::str(nb::float_(most * unit)).c_str())
+          .append(")");
+    made += ".\n";
+  }
+  return made +
+         "\n`speed` 0 plays a file as fast as it is read. `device_wait`: how long to wait for a "
+         "device that is not there yet (float('inf'): without limit). `record`: the MCAP file to "
+         "which the lidar is recorded; an existing file only with `overwrite`, and never the file "
+         "that is read.\n\n"
+         "Takes about 0.06 s with a healthy device, at most 15 s. Raises an Error.";
+}
+
 template <class... Wanted, std::size_t... Index>
 void bind_open(nb::module_& module, keyword_types<Wanted...>, std::index_sequence<Index...>) {
+  static const std::string text = text_of_open();
   const lidar_options usual;
   const auto seconds = [](auto time) { return std::chrono::duration<double>(time).count(); };
   module.def(
@@ -240,37 +281,7 @@ void bind_open(nb::module_& module, keyword_types<Wanted...>, std::index_sequenc
       "loop"_a = false, "begin"_a = 0.0, "end"_a = nb::none(), "raw_sample_rate_hz"_a = nb::none(),
       "model"_a = nb::none(), "zero_angle"_a = nb::none(), "record"_a = nb::none(),
       "overwrite"_a = false, "device_wait"_a = 0.0, "listen_only"_a = false,
-      "insist_on_model"_a = false, "leave_dtr"_a = false,
-      "Opens a lidar and queries its identity; a device that is scanning is stopped first. "
-      "`device`: '' for the only lidar; "
-      "a path; 'serial:2021101000070073' (the number of the lidar); 'usb:1-1.4'; 'tcp:host:port'; "
-      "a recording; "
-      "'file:PATH' (a recording, or raw bytes of a port); 'sim:?seed=7' (a simulated lidar in real "
-      "time); a Simulator.\n\n"
-      "Settings that are given are set at each start; None leaves them as the device has them: see "
-      "Lidar.set(). With "
-      "`reconnect` the driver reconnects after a loss. `partial_scans`: also pieces of "
-      "revolutions. All times in seconds: "
-      "`answer_time` (0.01 to 10) for an answer, `stall_time` (0.1 to 60) for a scan without data, "
-      "`longest_backoff` "
-      "(0.001 to 1) between two attempts to reconnect, `batch` (0 to 0.1) between two readings, "
-      "`transport_delay` the "
-      "least delay between measurement and arrival, `device_wait` how long to wait for a device "
-      "that is not there "
-      "yet (float('inf'): without limit).\n\n"
-      "Of a recording, or of raw bytes: `speed` 1 plays it as fast as it was recorded, 0 as fast "
-      "as it is read; "
-      "`loop` again and again; "
-      "from `begin` up to `end` seconds. Raw bytes in a file have `raw_sample_rate_hz` samples per "
-      "second (None: as the model). `model`: the model of the lidar, 'x4'; None: what a search at "
-      "the port finds, a recording or a Simulator states, or raw bytes show. `zero_angle`: what is "
-      "added to each angle, in degrees (-360 to 360): instead of the answer to command 93, which "
-      "the bytes may not have. `record`: the MCAP file to which the lidar is recorded; an existing "
-      "file only with `overwrite`, and never the file that is read. `listen_only`: not a byte is "
-      "sent; settings and requests are refused. `insist_on_model`: `model` is right, whatever "
-      "number the lidar reports, or model a recording states. `leave_dtr`: the line DTR of the "
-      "port is not set.\n\n"
-      "Takes about 0.06 s with a healthy device, at most 15 s. Raises an Error.");
+      "insist_on_model"_a = false, "leave_dtr"_a = false, text.c_str());
 }
 
 }  // namespace

@@ -118,6 +118,7 @@ result<lidar> lidar::open(std::unique_ptr<connector> from, const lidar_options& 
   if (used.model == nullptr) used.model = follows ? behind.begun_as : stated;
   if (behind.recognised.is_silent && behind.answers) used.listen_only = true;
   if (used.model == nullptr) used.model = &g4_model;
+  using namespace option_user;
   const option_users users = behind.answers ? live | port : recording | raw_file | pipe;
   if (const auto wrong = problem_with_users(used, users)) return tl::unexpected(*wrong);
   // Where the port could not be opened, there is no model that could refuse a setting.

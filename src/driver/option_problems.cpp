@@ -3,22 +3,39 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cstdint>
 #include <string_view>
 
 #include "error_context.hpp"
 #include "g4lidar/core/session/model_requests.hpp"
-#include "g4lidar/setting_table.hpp"
+#include "g4lidar/option_table.hpp"
 #include "g4lidar/source.hpp"
+#include "options/option_access.hpp"
 
 namespace g4lidar {
 namespace {
 
-using namespace std::chrono_literals;
-using std::chrono::milliseconds;
+using namespace option_user;
 
 error bad(std::string_view what) noexcept { return {task::configuring, problem::bad_option, what}; }
+
+/// A limit in the largest unit in which it is whole: "1 min", "10 ms"; "0"; a number without a unit.
+void add_limit(error_context& words, std::int64_t value, std::string_view unit) noexcept {
+  struct larger {
+    std::string_view from;
+    std::int64_t count;
+    std::string_view to;
+  };
+  constexpr std::array<larger, 3> units{
+      {{"ns", 1'000'000'000, "s"}, {"ms", 1000, "s"}, {"s", 60, "min"}}};
+  for (const auto& [from, count, to] : units) {
+    if (unit != from || value == 0 || value % count != 0) continue;
+    value /= count;
+    unit = to;
+  }
+  words.add(static_cast<std::uint32_t>(value));
+  if (value != 0 && !unit.empty()) words.add(" ").add(unit);
+}
 
 /// "OPTION: LEAST to MOST, not GIVEN UNIT".
 error bad(std::string_view what, std::int64_t given, std::string_view unit) noexcept {
@@ -26,7 +43,8 @@ error bad(std::string_view what, std::int64_t given, std::string_view unit) noex
   words.add(given < 0 ? ", not -" : ", not ");
   constexpr std::int64_t most = UINT32_MAX;
   const std::int64_t size = std::clamp(given, -most, most);
-  return bad(words.add(static_cast<std::uint32_t>(size < 0 ? -size : size)).add(unit));
+  words.add(static_cast<std::uint32_t>(size < 0 ? -size : size));
+  return bad(words.add(unit.empty() ? "" : " ").add(unit));
 }
 
 /// "sample_rate: 8000, 16000 or 18000 of a G6"; "frequency: 500 to 1200 (5 to 12 Hz of a G4), not 1300"; "idle: off or
@@ -42,48 +60,6 @@ error bad_setting(const setting_info& of, const model& which, std::uint16_t give
   words.add(" to ").add(most_dhz / 10U).add(" Hz").add_owner(which).add(")");
   return bad(words, given, "");
 }
-
-/// What can use an option; whether two values of it differ, and how it is copied.
-struct option_row {
-  std::string_view name;
-  option_users users;
-  bool (*differs)(const lidar_options& a, const lidar_options& b);
-  void (*copy)(lidar_options& to, const lidar_options& from);
-};
-
-/// `part(options)` is the member.
-template <class Part>
-constexpr option_row row(std::string_view name, option_users users, Part /*part*/) {
-  return {name, users,
-          [](const lidar_options& a, const lidar_options& b) { return !(Part{}(a) == Part{}(b)); },
-          [](lidar_options& to, const lidar_options& from) { Part{}(to) = Part{}(from); }};
-}
-
-constexpr option_users any_file = recording | raw_file;
-
-/// The options that not every source can use.
-constexpr std::array option_rows{
-    row("baud", live, [](auto& of) -> auto& { return of.baud; }),
-    row("listen_only", live, [](auto& of) -> auto& { return of.listen_only; }),
-    row("leave_dtr", live, [](auto& of) -> auto& { return of.leave_dtr; }),
-    row("probe_all_ports", port, [](auto& of) -> auto& { return of.probe_all_ports; }),
-    row("sample_rate", live, [](auto& of) -> auto& { return of.sample_rate; }),
-    row("frequency", live, [](auto& of) -> auto& { return of.frequency; }),
-    row("direction", live, [](auto& of) -> auto& { return of.direction; }),
-    row("constant", live, [](auto& of) -> auto& { return of.constant; }),
-    row("idle", live, [](auto& of) -> auto& { return of.idle; }),
-    row("protection", live, [](auto& of) -> auto& { return of.protection; }),
-    row("reconnect", live, [](auto& of) -> auto& { return of.reconnect; }),
-    row("longest_backoff", live, [](auto& of) -> auto& { return of.tuning.longest_backoff; }),
-    row("answer_time", live, [](auto& of) -> auto& { return of.tuning.answer_time; }),
-    row("stall_time", live, [](auto& of) -> auto& { return of.tuning.stall_time; }),
-    row("pace", live, [](auto& of) -> auto& { return of.tuning.pace; }),
-    row("speed", any_file, [](auto& of) -> auto& { return of.playback.speed; }),
-    row("loop", any_file, [](auto& of) -> auto& { return of.playback.loop; }),
-    row("range", any_file, [](auto& of) -> auto& { return of.playback.from_ns; }),
-    row("range", any_file, [](auto& of) -> auto& { return of.playback.to_ns; }),
-    row("raw_sample_rate_hz", raw_file, [](auto& of) -> auto& { return of.raw_sample_rate_hz; }),
-};
 
 std::string_view words_for(option_users users) noexcept {
   switch (users) {
@@ -105,8 +81,9 @@ std::string_view words_for(option_users users) noexcept {
 
 std::optional<error> problem_with_users(const lidar_options& options, option_users users) noexcept {
   const lidar_options usual;
-  for (const option_row& each : option_rows) {
-    if ((each.users & users) != 0 || !each.differs(options, usual)) continue;
+  for (const parameter& each : all_parameters()) {
+    if (each.access == nullptr || (each.users & users) != 0) continue;
+    if (!each.access->differs(options, usual)) continue;
     error_context about(each.name);
     about.add(", and ").add(options.device.empty() ? "the source" : options.device);
     about.add(" is ").add(words_for(users));
@@ -117,8 +94,8 @@ std::optional<error> problem_with_users(const lidar_options& options, option_use
 
 lidar_options without_others(lidar_options options, option_users users) {
   const lidar_options usual;
-  for (const option_row& each : option_rows) {
-    if ((each.users & users) == 0) each.copy(options, usual);
+  for (const parameter& each : all_parameters()) {
+    if (each.access != nullptr && (each.users & users) == 0) each.access->copy(options, usual);
   }
   return options;
 }
@@ -189,27 +166,21 @@ std::optional<error> problem_with_settings(const lidar_options& options) noexcep
 }
 
 std::optional<error> problem_with_use(const lidar_options& options) noexcept {
-  const auto within = [](auto value, auto least, auto most) {
-    return value >= least && value <= most;
-  };
-  if (options.tuning.pace > read_pace::revolutions)
-    return bad("pace: automatic, packets or revolutions");
-  const auto bad_time = [](std::string_view what, milliseconds given) {
-    return bad(what, given.count(), " ms");
-  };
-  if (!within(options.tuning.longest_backoff, 1ms, 1000ms))
-    return bad_time("longest_backoff: 1 ms to 1 s", options.tuning.longest_backoff);
-  if (!within(options.tuning.answer_time, 10ms, 10'000ms))
-    return bad_time("answer_time: 10 ms to 10 s", options.tuning.answer_time);
-  if (!within(options.tuning.stall_time, 100ms, 60'000ms))
-    return bad_time("stall_time: 100 ms to 1 min", options.tuning.stall_time);
-  if (!within(options.tuning.batch, 0ms, 100ms))
-    return bad_time("batch: 0 to 100 ms", options.tuning.batch);
-  if (!within(options.tuning.transport_delay, 0ns, 1'000'000'000ns)) {
-    return bad("transport_delay: 0 to 1 s", options.tuning.transport_delay.count(), " ns");
-  }
-  if (options.raw_sample_rate_hz && !within(*options.raw_sample_rate_hz, 1U, 1'000'000U)) {
-    return bad("raw_sample_rate_hz: 1 to 1000000", *options.raw_sample_rate_hz, "");
+  for (const parameter& each : all_parameters()) {
+    if (each.access == nullptr || each.access->number == nullptr) continue;
+    const std::int64_t given = each.access->number(options);
+    const auto least = static_cast<std::int64_t>(each.range[0]);
+    const auto most = static_cast<std::int64_t>(each.range[1]);
+    if (least <= given && given <= most) continue;
+    error_context words(each.name);
+    words.add(": ");
+    if (!each.words.empty())
+      return bad(
+          words.add(each.words[0]).add(", ").add(each.words[1]).add(" or ").add(each.words[2]));
+    add_limit(words, least, each.unit);
+    words.add(" to ");
+    add_limit(words, most, each.unit);
+    return bad(words, given, each.unit);
   }
   return std::nullopt;
 }

@@ -9,6 +9,7 @@
 
 #include "g4lidar/error.hpp"
 #include "g4lidar/lidar_options.hpp"
+#include "g4lidar/option_table.hpp"
 #include "g4lidar/recognition.hpp"
 #include "g4lidar/transport/connector.hpp"
 
@@ -22,14 +23,7 @@ namespace g4lidar {
 /// With the settings, which depend on the model; null: of a G4. *Pure.*
 [[nodiscard]] std::optional<error> problem_with_settings(const lidar_options& options) noexcept;
 
-/// What uses options; bits of a set.
-enum option_user : std::uint8_t {
-  live = 1,       ///< A port, a network bridge, `sim:`.
-  recording = 2,  ///< A file with times.
-  raw_file = 4,   ///< A file of raw bytes.
-  pipe = 8,       ///< Raw bytes as they come.
-  port = 16,      ///< Beside `live`: a port of this computer, which may be searched.
-};
+/// Bits of option_user.
 using option_users = std::uint8_t;
 
 /// With the options that are given, and that none of `users` can use. *Pure.*

@@ -50,6 +50,7 @@ named_parts divided(std::string_view name) {
 }
 
 option_users users_of(source_kind kind, const std::string& path) {
+  using namespace option_user;
   if (kind == source_kind::recording) return recording;
   if (kind == source_kind::simulated) return live;
   if (kind == source_kind::device) return is_bridge(path) ? live : live | port;

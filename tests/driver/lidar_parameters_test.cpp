@@ -24,9 +24,9 @@ using ::testing::HasSubstr;
 
 TEST(LimitedRow, HasTheValuesOfTheModel) {
   const auto row = [](const char* name, const char* word) {
-    return limited_to(*model_named(word), *find_parameter(name));
+    return limits_of(*find_parameter(name), model_named(word));
   };
-  const parameter& all = *find_parameter("sample_rate");
+  const parameter_limits all = limits_of(*find_parameter("sample_rate"));
   EXPECT_EQ(all.constraints, "4000, 6000, 8000, 9000, 10000, 16000, 18000, 20000");
   EXPECT_EQ(row("sample_rate", "f4-pro").constraints, "4000, 6000");
   EXPECT_EQ(row("sample_rate", "g6").constraints, "8000, 16000, 18000");

@@ -48,8 +48,8 @@ const std::vector<option>& of_files() {
   static const std::vector<option> all{
       {"speed", [](auto& of) { of.playback.speed = 1; }},
       {"loop", [](auto& of) { of.playback.loop = true; }},
-      {"range", [](auto& of) { of.playback.from_ns = 1'000'000; }},
-      {"range", [](auto& of) { of.playback.to_ns = 1'000'000'000; }},
+      {"begin", [](auto& of) { of.playback.from_ns = 1'000'000; }},
+      {"end", [](auto& of) { of.playback.to_ns = 1'000'000'000; }},
   };
   return all;
 }

@@ -164,15 +164,19 @@ TEST(ExtremeText, Parameters) {
       [](test::dice& random) {
         scan_shaper shaper;
         lidar_parameters parameters({}, {}, {}, shaper);
+        lidar_options options;
         for (const parameter& each : all_parameters()) {
-          std::vector<named_value> wanted{{std::string(each.name), any<double>(random)}};
-          use(parameters.change(nullptr, wanted).size());
-          wanted[0].second = any<std::int64_t>(random);
-          use(parameters.change(nullptr, wanted).size());
-          wanted[0].second = any_number(random);
-          use(parameters.change(nullptr, wanted).size());
+          for (const parameter_value& number :
+               {parameter_value(any<double>(random)), parameter_value(any<std::int64_t>(random)),
+                parameter_value(any_number(random))}) {
+            const std::vector<named_value> wanted{{std::string(each.name), number}};
+            use(parameters.change(nullptr, wanted).size());
+            use(set_option(options, each, number).size());
+          }
           use(parameters.value(each).index());
+          use(each.is_of(any<std::uint8_t>(random)));
         }
+        use(problem_with(options).has_value());
       },
       100);
 }

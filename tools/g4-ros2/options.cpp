@@ -33,12 +33,11 @@ option_row topic_row(const char* names, const char* help, std::string& into) {
   });
 }
 
-option_row frame_name_row(const char* names, const char* help, std::string& into) {
-  return checked(text_row(names, "NAME", help, into, completion::nothing),
-                 [](const std::string& word) {
-                   if (word.empty()) throw bad_value("a frame needs a name");
-                   check_length(word);
-                 });
+option_row frame_name_row(std::string_view name, std::string& into) {
+  return checked(row_of(name, into), [](const std::string& word) {
+    if (word.empty()) throw bad_value("a frame needs a name");
+    check_length(word);
+  });
 }
 
 option_rows topic_rows(ros2_options& options) {
@@ -63,18 +62,14 @@ option_rows topic_rows(ros2_options& options) {
        topic_row("--tf-topic", "Frames that move; off: none (/tf)", topics.tf),
        topic_row("--tf-static-topic", "Places of lidars; off: none (/tf_static)", topics.tf_static),
        topic_row("--run-topic", "Bool: rest or turn the motor; off: none (NODE/run)", topics.run),
-       frame_name_row("--frame-id", "Frame of the lidar (laser)", options.frames.lidar),
-       frame_name_row("--base-frame", "Frame of the robot (base_link)", options.frames.robot),
-       frame_name_row("--odometry-frame", "Frame of the odometry (odom)",
-                      options.frames.odometry)});
+       frame_name_row("frame_id", options.frames.lidar),
+       frame_name_row("base_frame", options.frames.robot),
+       frame_name_row("odometry_frame", options.frames.odometry)});
 }
 
 option_rows scan_rows(ros2_options& options) {
-  return in_group("Scans",
-                  {order_row(options.order),
-                   number_row("--grid", "N", "Ranges of each LaserScan (by the model; G4: 720)",
-                              options.bins, 1U, 65536U),
-                   merge_row(options.merges)});
+  return in_group("Scans", {row_of("order", options.order), row_of("grid", options.bins),
+                            merge_row(options.merges)});
 }
 
 option_rows network_rows(ros2_options& options) {
@@ -97,26 +92,15 @@ option_rows network_rows(ros2_options& options) {
                                           {"iron", announced_form::iron}})});
 }
 
-option_rows place_rows(ros2_options& options) {
-  return in_group(
-      "Motion of the robot",
-      joined(named_mount_row(
-                 "Where the lidar is on the robot; NAME=X,Y,DEG: that lidar; for /tf_static",
-                 options.mounts),
-             deskew_row(options.common)));
-}
-
 option_rows device_and_player_rows(ros2_options& options) {
   option_row set{
       "--set", "NAME=VALUE", "Set the lidar at the start: frequency=10; may be repeated",
       [&into = options.settings](const std::string& word) { into.push_back(change_of(word)); }};
   set.complete = completion::setting;
   set.repeatable = true;
-  return joined(
-      in_group("Device", joined(set, flag_row("--standby", "Rest the motor while nobody subscribes",
-                                              options.is_standby))),
-      device_rows(options.common),
-      player_rows(options.source.playback.speed, options.source.playback.loop));
+  return joined(in_group("Device", joined(set, row_of("standby", options.is_standby))),
+                device_rows(options.common),
+                player_rows(options.source.playback.speed, options.source.playback.loop));
 }
 
 /// Refuses two uses of one topic, which can have only one type.
@@ -184,7 +168,9 @@ std::vector<named_source> sources_of(const ros2_options& options) {
 
 option_rows ros2_rows(const std::shared_ptr<ros2_options>& shared) {
   ros2_options& options = *shared;
-  return joined(topic_rows(options), scan_rows(options), place_rows(options),
+  return joined(topic_rows(options), scan_rows(options),
+                in_group("Motion of the robot", {named_mount_row(options.mounts),
+                                                 row_of("deskew", options.common.deskew)}),
                 joined(filter_rows(options.common), near_row(options.common.marks.near),
                        grid_rows(options.common.grid)),
                 network_rows(options), device_and_player_rows(options),

@@ -2,9 +2,8 @@
 #include "node_parameters.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdint>
+#include <cstddef>
 #include <stdexcept>
 #include <string_view>
 #include <tuple>
@@ -13,11 +12,9 @@
 
 #include <rclcpp/version.h>
 
-#include "g4lidar/core/model.hpp"
 #include "g4lidar/export/mask.hpp"
 #include "g4lidar/filter_text.hpp"
 #include "g4lidar/lidar_parameters.hpp"
-#include "g4lidar/setting_table.hpp"
 #include "g4lidar/source.hpp"
 #include "parameter_declarations.hpp"
 
@@ -42,7 +39,20 @@ bool is_direction(const std::string& name) {
 /// A filter or a setting of this name; else null.
 const g4lidar::parameter* row_of(const std::string& name) {
   const g4lidar::parameter* const known = g4lidar::find_parameter(name);
-  return known != nullptr && known->kind != g4lidar::parameter_kind::read_only ? known : nullptr;
+  const bool is_one = known != nullptr &&
+                      (known->setting != nullptr || known->kind == g4lidar::parameter_kind::filter);
+  return is_one ? known : nullptr;
+}
+
+/// The number of the word that a parameter is. Throws std::invalid_argument if it is none.
+std::size_t word_in(const rclcpp::Parameter& given) {
+  const auto words = g4lidar::find_parameter(given.get_name())->words;
+  const auto at = std::ranges::find(words, given.as_string());
+  if (at != words.end()) return static_cast<std::size_t>(at - words.begin());
+  const std::string all =
+      g4lidar::limits_of(*g4lidar::find_parameter(given.get_name())).constraints;
+  throw std::invalid_argument(given.get_name() + ": '" + given.as_string() + "' is not one of " +
+                              all);
 }
 
 /// The mask in this file. Throws std::invalid_argument.
@@ -134,12 +144,7 @@ void node_parameters::take_motion(session_options& into) const {
   motion.odometry_frame = text("odometry_frame");
   motion.is_turned = into.order == g4lidar::scan_order::time;
   if (into.lidars.size() == 1) motion.mount = into.lidars.front().mount;
-  const std::string deskew = text("deskew");
-  constexpr std::array<std::string_view, 4> words{"none", "scans", "odometry", "tf"};
-  const auto at = std::ranges::find(words, deskew);
-  if (at == words.end())
-    throw std::invalid_argument("deskew: '" + deskew + "' is not one of none, scans, odometry, tf");
-  motion.from = static_cast<motion_source>(at - words.begin());
+  motion.from = static_cast<motion_source>(word_in(node_.get_parameter("deskew")));
   if (motion.from == motion_source::none) return;
   if (motion.is_turned)
     throw std::invalid_argument(
@@ -153,23 +158,21 @@ void node_parameters::take_motion(session_options& into) const {
 }
 
 void node_parameters::take_opening(g4lidar::lidar_options& into) const {
-  if (std::string word = text("model"); !word.empty()) {
-    into.insist_on_model = word.ends_with('!');
-    if (into.insist_on_model) word.pop_back();
-    into.model = g4lidar::model_named(word);
-    if (into.model == nullptr) throw std::invalid_argument("model: " + g4lidar::why_no_model(word));
+  for (const g4lidar::parameter& each : g4lidar::all_parameters()) {
+    const bool is_opening = each.access != nullptr && each.setting == nullptr;
+    if (!is_opening || !each.is_of(g4lidar::option_door::node)) continue;
+    const rclcpp::ParameterValue given = node_.get_parameter(node_name(each)).get_parameter_value();
+    if (given == first_value(each)) continue;  // not given
+    const std::string wrong = g4lidar::set_option(into, each, value_of(given));
+    if (!wrong.empty()) throw std::invalid_argument(node_name(each) + ": " + wrong);
   }
-  into.insist_on_model |= node_.get_parameter("insist_on_model").as_bool();
-  into.listen_only = node_.get_parameter("listen_only").as_bool();
-  into.leave_dtr = node_.get_parameter("leave_dtr").as_bool();
-  if (const auto baud = node_.get_parameter("baud").as_int(); baud > 0)
-    into.baud = static_cast<std::uint32_t>(baud);
-  if (const auto wrong = g4lidar::problem_with_source(into))
+  g4lidar::lidar_options of_source = into;
+  of_source.playback = {};  // those of a lidar are ignored
+  if (const auto wrong = g4lidar::problem_with_source(of_source))
     throw std::invalid_argument(wrong->message());
+  if (into.playback.speed == 0) into.playback.speed = 1;
   into.reconnect = true;
   into.device_wait = connect_timeout();
-  into.playback.speed = node_.get_parameter("playback_speed").as_double();
-  into.playback.loop = node_.get_parameter("loop").as_bool();
   into.is_cancelled = [of = node_.get_node_base_interface()->get_context()] {
     return !of->is_valid();
   };
@@ -200,19 +203,14 @@ std::vector<g4lidar::service_lidar> node_parameters::lidars() const {
 }
 
 session_options node_parameters::for_session() const {
-  for (const char* const name : {"connect_timeout", "playback_speed"}) {  // which ranges let pass
-    if (std::isnan(node_.get_parameter(name).as_double()))
-      throw std::invalid_argument(std::string(name) + ": it is not a number");
-  }
+  if (std::isnan(node_.get_parameter("connect_timeout").as_double()))  // a range lets it pass
+    throw std::invalid_argument("connect_timeout: it is not a number");
   session_options made;
   made.lidars = lidars();
   made.frame_id = text(made.lidars.size() == 1 ? "frame_id" : "base_frame");
   if (const auto bins = node_.get_parameter("grid").as_int(); bins > 0)
     made.bins = static_cast<std::uint32_t>(bins);
-  const std::string order = text("order");
-  if (order != "angle" && order != "time")
-    throw std::invalid_argument("order: '" + order + "' is not one of angle, time");
-  if (order == "time") made.order = g4lidar::scan_order::time;
+  made.order = static_cast<g4lidar::scan_order>(word_in(node_.get_parameter("order")));
   take_motion(made);
   made.service.mask = mask_in(text("mask"));
   made.service.filters.filter.in = g4lidar::frame::robot;
@@ -226,7 +224,7 @@ session_options node_parameters::for_session() const {
     const auto value = wanted_in(each, node_.get_parameter(name));
     if (value.index() == 0) continue;
     for (g4lidar::service_lidar& lidar : made.lidars) {
-      g4lidar::set_option(lidar.options, *g4lidar::answer_of(*each.setting, value));
+      static_cast<void>(g4lidar::set_option(lidar.options, each, value));
       lidar.settings.emplace_back(name, value);
     }
   }
@@ -262,7 +260,7 @@ std::vector<g4lidar::named_value> node_parameters::filters(const changes& wanted
   std::vector<g4lidar::named_value> found;
   for (const g4lidar::parameter& each : g4lidar::all_parameters()) {
     const std::string name(each.name);
-    if (each.kind == g4lidar::parameter_kind::filter)
+    if (each.kind == g4lidar::parameter_kind::filter && each.is_of(g4lidar::option_door::node))
       found.emplace_back(name, value_of(value(name).get_parameter_value()));
     if (name == "fov")
       found.back().second = field_of_view(value(name).as_string(), value("angle_min").as_double(),

@@ -31,6 +31,7 @@ class node_parameters {
   using changes = std::vector<rclcpp::Parameter>;
   void warn_about_unknown_ones() const;
   void take_motion(session_options& into) const;
+  /// How a lidar is opened.
   void take_opening(g4lidar::lidar_options& into) const;
   /// Those of `source` or `sources`.
   [[nodiscard]] std::vector<g4lidar::service_lidar> lidars() const;

@@ -6,13 +6,17 @@
 
 #include <rclcpp_lifecycle/lifecycle_node.hpp>
 
-#include "g4lidar/lidar_parameters.hpp"
+#include "g4lidar/option_table.hpp"
 
 namespace g4lidar_ros {
 
 /// Declares all but those of ROS itself. Throws what rclcpp throws, as for a value of the wrong type.
 void declare_parameters(rclcpp_lifecycle::LifecycleNode& node);
 
+/// Its name as a parameter.
+[[nodiscard]] std::string node_name(const g4lidar::parameter& of);
+/// The value without one that is given: the filters keep everything, and nothing is set.
+[[nodiscard]] rclcpp::ParameterValue first_value(const g4lidar::parameter& of);
 /// The value with this type, as g4lidar::converted(); of an array for a text "30:40 90:100"; as it is if that cannot be.
 [[nodiscard]] rclcpp::ParameterValue converted(const rclcpp::ParameterValue& from,
                                                rclcpp::ParameterType to);

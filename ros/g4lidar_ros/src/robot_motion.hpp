@@ -21,8 +21,8 @@
 
 namespace g4lidar_ros {
 
-/// From where the motion is known by which points are deskewed.
-enum class motion_source : unsigned char { none, scans, odometry, tf };
+/// From where the motion is known by which points are deskewed, in the order of the words of the parameter deskew.
+enum class motion_source : unsigned char { none, odometry, scans, tf };
 
 struct motion_options {
   motion_source from = motion_source::none;

@@ -18,7 +18,7 @@ void refuse_files(const common_options& options, task doing) {
 }
 
 void refuse_listening(const common_options& options) {
-  if (options.expected.listens)
+  if (options.expected.listen_only)
     throw bad_value(
         "--listen: nothing is sent, and this command sends something; omit one of them");
 }

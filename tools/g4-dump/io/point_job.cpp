@@ -209,12 +209,12 @@ class point_run {
   }
 
   std::uint64_t read_bytes(input& in, output& out) {
-    if (common_.expected.zero && model_->zero_angle_divisor == 0) {
+    if (common_.expected.zero_angle && model_->zero_angle_divisor == 0) {
       throw bad_value(
           fmt::format("--zero-angle: {} {} has no such offset", article_of(*model_), model_->name));
     }
     byte_points way(*writer_, out, job_.source.raw_sample_rate_hz.value_or(first_rate_hz(*model_)),
-                    *model_, common_.expected.zero);
+                    *model_, common_.expected.zero_angle);
     std::vector<std::uint8_t> beginning;
     pump(in, out, [&](std::span<const std::uint8_t> got) {
       const auto more = got.first(std::min(got.size(), beginning_bytes - beginning.size()));

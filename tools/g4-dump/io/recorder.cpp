@@ -226,7 +226,7 @@ option_rows message_rows(g4lidar::recording_options& into) {
   return joined(
       option_rows{value_row("--points", "", "Write each revolution as a PointCloud2 message, too",
                             into.points_topic, [](const std::string&) { return "/points"; }),
-                  order_row(into.order)},
+                  row_of("order", into.order)},
       near_row(into.near), grid_rows(into.grid));
 }
 

@@ -296,11 +296,12 @@ verb make_acceptance_verb() {
   return {.name = "acceptance",
           .summary = "Compare a real lidar with the table of models, for a report",
           .arguments = {source_argument(*options)},
-          .options =
-              joined(output_rows(*options), json, time, baud_row(*options), model_row(*options),
-                     all_ports_row(*options),
-                     option_rows{file, flag_row("--alone", "Leave out the steps that need a user",
-                                                options->run.is_alone)}),
+          .options = joined(
+              output_rows(*options), json, time, rows_of("Device", {"baud"}, options->expected),
+              row_of("model", options->expected),
+              rows_of("Device", {"probe_all_ports"}, options->expected),
+              option_rows{file, flag_row("--alone", "Leave out the steps that need a user",
+                                         options->run.is_alone)}),
           .details = acceptance_details,
           .examples = {{"g4-dump acceptance --model x4 /dev/ttyUSB0", "Examine an X4"},
                        {"g4-dump acceptance --alone --file g4.mcap sim:",

@@ -133,7 +133,7 @@ void check_combination(const convert_options& options, file_form from, file_form
   }
   const bool keeps_bytes =
       to == file_form::raw_bytes || (to == file_form::recording && from == file_form::recording);
-  if (keeps_bytes && options.points.common->expected.zero) {
+  if (keeps_bytes && options.points.common->expected.zero_angle) {
     throw bad_value(
         "the bytes stay as they are: --zero-angle is for points, and for a recording of raw bytes");
   }
@@ -292,9 +292,9 @@ option_rows form_rows(convert_options& options) {
       moment_row("--to", "End at this time of IN: 40s", range.to_ns),
       value_row("--ascii", "", "Write pcd as text", job.data,
                 [](const std::string&) { return pcd_data::ascii; }),
-      model_row(*job.common),
-      zero_row(*job.common),
-      sample_rate_row(job.source.raw_sample_rate_hz),
+      row_of("model", job.common->expected),
+      row_of("zero_angle", job.common->expected),
+      row_of("raw_sample_rate_hz", job.source.raw_sample_rate_hz),
       frame_row("--from-frame", "Frame of the angles in csv and jsonl (vendor)", job.text_frame),
       compress_row(options.made.packed)};
 }
@@ -304,7 +304,8 @@ option_rows point_rows(convert_options& options) {
   common_options& common = *options.points.common;
   option_rows rows = joined(flag_row("--scans", "A record for each revolution, in csv and jsonl",
                                      options.points.style.scans),
-                            filter_rows(common), shape_rows(common), deskew_row(common));
+                            filter_rows(common), shape_rows(common),
+                            rows_of("Motion of the robot", {"deskew"}, common.deskew));
   for (option_row& row : rows) {
     row = checked(std::move(row), [&options](const std::string&) { options.shapes = true; });
   }

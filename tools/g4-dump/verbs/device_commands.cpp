@@ -43,8 +43,8 @@ std::optional<g4lidar::health> reported_health(g4lidar::lidar& lidar) {
 exit_code health(const common_options& options) {
   output out(options.output);
   command_source source(options, task::asking);
-  const bool is_asked =
-      source.candidates().front()->link == g4lidar::link_kind::two_way && !options.expected.listens;
+  const bool is_asked = source.candidates().front()->link == g4lidar::link_kind::two_way &&
+                        !options.expected.listen_only;
   const auto given = !is_asked ? reported_health(source.lidar())
                                : std::optional(value_of(source.lidar().ask(requests::health())));
   report_contradictions(source.lidar().recognition());

@@ -153,9 +153,9 @@ int examine(const doctor_options& options) {
   refuse_options_of_others(options);
   diagnostic_options how;
   how.baud = options.expected.baud;
-  how.insist_on_model = options.expected.insists;
-  how.listen_only = options.expected.listens;
-  how.probe_all_ports = options.expected.all_ports;
+  how.insist_on_model = options.expected.insist_on_model;
+  how.listen_only = options.expected.listen_only;
+  how.probe_all_ports = options.expected.probe_all_ports;
   const source_kind kind = kind_of_source(options.source);
   std::optional<recognised_model> seen;
   // What cannot be read as the named model is examined all the same.
@@ -222,33 +222,34 @@ verb make_doctor_verb() {
   time.help = "Listen to the scan for so long (5s)";
   option_row json = json_row(*options);
   json.help = "A JSON object for each stage, a line each";
-  return {.name = "doctor",
-          .summary = "What is wrong with a lidar, its port or a file, and what to try",
-          .arguments = {source_argument(*options)},
-          .options = joined(
-              output_rows(*options), json, time, baud_row(*options), model_row(*options),
-              in_group("Device", {listen_row(*options)}), all_ports_row(*options),
-              direction_rows(*options),
-              in_group("Filters",
-                       {frame_row(
-                           "--frame",
-                           "Of --fov and --ignore; vendor: clockwise from 0 of the lidar (vendor)",
-                           options->frame)}),
-              in_group("Report of a problem",
-                       {text_row("--report", "FILE",
-                                 "Write a text, and a recording beside it, to attach to a report",
-                                 options->report, completion::output)})),
-          .details = doctor_details,
-          .examples = {{"g4-dump doctor", "Examine the only lidar"},
-                       {"g4-dump doctor --json -d 30s /dev/ttyUSB0",
-                        "Listen to one port for 30 s, as JSON"},
-                       {"g4-dump doctor walk.mcap", "Examine a recording"},
-                       {"g4-dump doctor --report report.txt",
-                        "Write report.txt and report.mcap, to attach to a report of a problem"},
-                       {"g4-dump doctor 'sim:?fault=flip'", "A simulated G4 on a bad cable"},
-                       {"g4-dump doctor 'sim:?model=x4&motor_has_power=false'",
-                        "A simulated X4 without its second plug"}},
-          .run = [options] { return examine(*options); }};
+  return {
+      .name = "doctor",
+      .summary = "What is wrong with a lidar, its port or a file, and what to try",
+      .arguments = {source_argument(*options)},
+      .options = joined(
+          output_rows(*options), json, time, rows_of("Device", {"baud"}, options->expected),
+          row_of("model", options->expected), rows_of("Device", {"listen_only"}, options->expected),
+          rows_of("Device", {"probe_all_ports"}, options->expected), direction_rows(*options),
+          in_group(
+              "Filters",
+              {frame_row("--frame",
+                         "Of --fov and --ignore; vendor: clockwise from 0 of the lidar (vendor)",
+                         options->frame)}),
+          in_group("Report of a problem",
+                   {text_row("--report", "FILE",
+                             "Write a text, and a recording beside it, to attach to a report",
+                             options->report, completion::output)})),
+      .details = doctor_details,
+      .examples = {{"g4-dump doctor", "Examine the only lidar"},
+                   {"g4-dump doctor --json -d 30s /dev/ttyUSB0",
+                    "Listen to one port for 30 s, as JSON"},
+                   {"g4-dump doctor walk.mcap", "Examine a recording"},
+                   {"g4-dump doctor --report report.txt",
+                    "Write report.txt and report.mcap, to attach to a report of a problem"},
+                   {"g4-dump doctor 'sim:?fault=flip'", "A simulated G4 on a bad cable"},
+                   {"g4-dump doctor 'sim:?model=x4&motor_has_power=false'",
+                    "A simulated X4 without its second plug"}},
+      .run = [options] { return examine(*options); }};
 }
 
 }  // namespace g4_tool

@@ -75,7 +75,7 @@ device_facts facts_of_device(const common_options& options) {
   device_facts facts{.source = std::string(lidar.name())};
   if (!lidar.information().is_known()) listen(lidar);
   if (lidar.information().is_known()) facts.information = lidar.information();
-  if (options.expected.listens) facts.why_unknown = "only listened to";
+  if (options.expected.listen_only) facts.why_unknown = "only listened to";
   facts.candidates.assign(source.candidates().begin(), source.candidates().end());
   recognition found = lidar.recognition();
   found.has_shown_samples = true;  // nothing more is awaited

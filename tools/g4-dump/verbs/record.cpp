@@ -108,12 +108,12 @@ option_rows scan_rows(record_options& options) {
   const auto name = [](const char* option, const char* help, std::string& into) {
     return text_row(option, "NAME", help, into, completion::nothing);
   };
-  const option_rows rows =
-      joined(option_rows{value_row("--no-scans", "", "Record the bytes, no LaserScan messages",
-                                   made.scans, [](const std::string&) { return false; }),
-                         name("--topic", "Topic of the LaserScan messages (/scan)", made.topic),
-                         name("--frame-id", "frame_id of scans and points (laser)", made.frame_id)},
-             message_rows(made), sample_rate_row(options.job.source.raw_sample_rate_hz));
+  const option_rows rows = joined(
+      option_rows{value_row("--no-scans", "", "Record the bytes, no LaserScan messages", made.scans,
+                            [](const std::string&) { return false; }),
+                  name("--topic", "Topic of the LaserScan messages (/scan)", made.topic),
+                  name("--frame-id", "frame_id of scans and points (laser)", made.frame_id)},
+      message_rows(made), row_of("raw_sample_rate_hz", options.job.source.raw_sample_rate_hz));
   return joined(in_group("Contents", rows), motion_rows(options.job.common));
 }
 

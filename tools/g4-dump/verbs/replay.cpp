@@ -124,11 +124,12 @@ verb make_replay_verb() {
                            [](const std::string& word) {
                              return word == "max" ? 0.0 : number_of(word, 0.001, 1000.0);
                            }),
-                 loop_row(played.loop),
+                 row_of("loop", played.loop),
                  moment_row("--from", "Begin at this time of the recording: 10s", played.from_ns),
                  moment_row("--to", "End at this time of the recording: 40s", played.to_ns),
-                 model_row(common), zero_row(common), verification, ending_rows(common),
-                 filter_rows(common), near_row(common.marks.near), shape_rows(common)),
+                 row_of("model", common.expected), row_of("zero_angle", common.expected),
+                 verification, ending_rows(common), filter_rows(common),
+                 near_row(common.marks.near), shape_rows(common)),
       .details = replay_details,
       .examples = {{"g4-dump replay walk.mcap", "Print the points at the speed of the recording"},
                    {"g4-dump replay walk.mcap --playback-speed max -f csv -o walk.csv",

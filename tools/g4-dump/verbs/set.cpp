@@ -71,7 +71,7 @@ void execute(g4lidar::lidar& lidar, const setting_change& wanted, output& out, b
 
 /// "has 5 to 12 Hz": what the model can have.
 std::string possible_values(const g4lidar::model& which, const setting_info& of) {
-  const parameter row = limited_to(which, *find_parameter(of.name));
+  const parameter_limits row = limits_of(*find_parameter(of.name), &which);
   if (of.type == setting_type::decimal)
     return fmt::format("has {} to {} Hz", row.range[0], row.range[1]);
   if (of.type != setting_type::whole) return "cannot have it";

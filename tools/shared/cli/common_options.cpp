@@ -5,19 +5,15 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdlib>
-#include <functional>
 #include <string_view>
 #include <utility>
 #include <variant>
 #include <vector>
 
 #include "g4lidar/filter_text.hpp"
-#include "g4lidar/lidar_options.hpp"
 #include "io/command_files.hpp"
 #include "logger.hpp"
-#include "suggestion.hpp"
 
 namespace g4_tool {
 
@@ -81,91 +77,26 @@ option_rows ending_rows(common_options& options, bool with_idle) {
   return in_group("End condition", rows);
 }
 
-namespace {
-
-/// The name in `text`, a word or limits, that is none of `known`.
-std::string unknown_name(std::string_view text, const std::vector<std::string>& known) {
-  while (!text.empty()) {
-    const std::string_view piece = text.substr(0, text.find(','));
-    text.remove_prefix(std::min(piece.size() + 1, text.size()));
-    std::string name(piece.substr(0, piece.find('=')));
-    if (std::ranges::find(known, name) == known.end()) return name;
-  }
-  return {};
-}
-
-/// Sets a filter by its text. Throws bad_value.
-void take_filter(filter_settings& into, std::string_view name, const std::string& text) {
-  const std::string wrong = set_filter(into, name, text);
-  if (wrong.empty()) return;
-  const auto words = filter_words(name);
-  const std::vector<std::string> known(words.begin(), words.end());
-  throw bad_value(wrong + did_you_mean(unknown_name(text, known), known));
-}
-
-/// The same for the marks.
-void take_marks(mark_limits& into, std::string_view name, const std::string& text) {
-  filter_settings now{.marks = into};
-  take_filter(now, name, text);
-  into = now.marks;
-}
-
-/// The option of a filter: "--near-as" of near_as.
-option_row filter_row(const char* names, std::string value, const char* help,
-                      std::function<void(const std::string&)> take) {
-  option_row row{names, std::move(value), help, std::move(take)};
+option_row near_row(std::optional<near_limits>& into) {
+  option_row row = row_of(*find_parameter("near"), [&into](const std::string& word) {
+    filter_settings made;
+    store(made, *find_parameter("near"), word);
+    into = made.marks.near;
+  });
   row.group = "Filters";
   return row;
 }
 
-/// A flag whose optional value sets some limits.
-option_row limits_row(const char* names, const char* help,
-                      std::function<void(const std::string&)> take) {
-  option_row row = filter_row(names, "", help, std::move(take));
-  row.optional_value = "LIMITS";
-  return row;
-}
-
-/// Sets the filter of this name by a word.
-std::function<void(const std::string&)> taken(common_options& options, std::string_view name) {
-  return [&options, name](const std::string& word) {
-    filter_settings now{.filter = options.filter, .marks = options.marks};
-    take_filter(now, name, word);
-    options.filter = now.filter;
-    options.marks = now.marks;
-  };
-}
-
-}  // namespace
-
-option_row near_row(std::optional<near_limits>& into) {
-  return limits_row("--near", "Flag directions where something may be too near for a return",
-                    [&into](const std::string& word) {
-                      mark_limits marks;
-                      take_marks(marks, "near", word);
-                      into = marks.near;
-                    });
-}
-
 option_rows grid_rows(grid_options& into) {
-  return in_group(
-      "Ranges without return",
-      {choice_row("--no-return", "What the range of a direction without return becomes (inf)",
-                  into.no_return,
-                  choices<no_return_as>{{"inf", no_return_as::infinity},
-                                        {"nan", no_return_as::nan},
-                                        {"max", no_return_as::max}}),
-       choice_row("--near-as", "What the range of a direction that --near flags becomes (nan)",
-                  into.near_is_minus_infinity,
-                  choices<bool>{{"nan", false}, {"minus-inf", true}})});
-}
-
-option_row order_row(scan_order& into) {
-  return choice_row("--order",
-                    "Order of the ranges of a LaserScan; time: z is down, not for slam_toolbox "
-                    "(angle)",
-                    into,
-                    choices<scan_order>{{"angle", scan_order::angle}, {"time", scan_order::time}});
+  option_rows rows;
+  for (const char* const name : {"no_return", "near_as"}) {
+    rows.push_back(row_of(*find_parameter(name), [&into, name](const std::string& word) {
+      filter_settings made{.grid = into};
+      store(made, *find_parameter(name), word);
+      into = made.grid;
+    }));
+  }
+  return in_group("Ranges without return", rows);
 }
 
 void note_order(scan_order chosen) {
@@ -176,18 +107,16 @@ void note_order(scan_order chosen) {
 }
 
 option_rows direction_rows(common_options& options) {
-  option_row ignore = filter_row(
-      "--ignore", "FROM:TO", "Leave out these directions: 30:40; may be repeated",
-      [&options](const std::string& word) {
-        filter_settings more;
-        take_filter(more, "ignore", word);
-        options.ignored.insert(options.ignored.end(), more.ignored.begin(), more.ignored.end());
-      });
-  ignore.repeatable = true;
-  return in_group("Filters", {filter_row("--fov", "FROM:TO",
-                                         "Keep these directions, in degrees of the frame: -90:90",
-                                         taken(options, "fov")),
-                              ignore});
+  filter_settings& into = options;
+  option_rows rows = rows_of("Filters", {"fov", "ignore"}, into);
+  rows.back().take = [&into](const std::string& word) {
+    filter_settings more;
+    store(more, *find_parameter("ignore"), word);
+    into.ignored.insert(into.ignored.end(), more.ignored.begin(), more.ignored.end());
+  };
+  rows.back().help += "; may be repeated";
+  rows.back().repeatable = true;
+  return rows;
 }
 
 point_filter directions_of(const common_options& options) {
@@ -198,17 +127,10 @@ point_filter directions_of(const common_options& options) {
 }
 
 option_rows filter_rows(common_options& options) {
-  return in_group(
-      "Filters",
-      joined(filter_row("--range", "FROM:TO", "Keep returns in this range, in meters: 0.28:16",
-                        taken(options, "range")),
-             direction_rows(options),
-             text_row("--mask", "FILE", "Leave out returns inside the polygons of a file",
-                      options.mask, completion::input),
-             limits_row("--speckle", "Leave out returns without another one near them",
-                        taken(options, "speckle")),
-             limits_row("--edges", "Leave out veiling points at jumps of the range",
-                        taken(options, "edges"))));
+  filter_settings& into = options;
+  return joined(rows_of("Filters", {"range"}, into), direction_rows(options),
+                rows_of("Filters", {"mask"}, options.mask),
+                rows_of("Filters", {"speckle", "edges"}, into));
 }
 
 mounting mounting_of(const std::string& text) {
@@ -218,9 +140,8 @@ mounting mounting_of(const std::string& text) {
 }
 
 option_row mount_row(common_options& options) {
-  return value_row("--mount", "X,Y,DEG[,down]",
-                   "Where the lidar is on the robot; down: top down (0,0,0)", options.mount,
-                   mounting_of);
+  return row_of(*find_parameter("mount"),
+                [&into = options.mount](const std::string& word) { into = mounting_of(word); });
 }
 
 option_rows motion_rows(common_options& options) {
@@ -228,14 +149,6 @@ option_rows motion_rows(common_options& options) {
                   {text_row("--odometry", "FILE", "Poses: lines of time_ns, x, y and yaw_rad",
                             options.odometry, completion::input),
                    mount_row(options)});
-}
-
-option_row deskew_row(common_options& options) {
-  option_row row = choice_row(
-      "--deskew", "Deskew each revolution by the odometry, or by the scans alone", options.deskew,
-      choices<deskewing>{{"odometry", deskewing::by_path}, {"scans", deskewing::by_scans}});
-  row.group = "Motion of the robot";
-  return row;
 }
 
 option_row frame_row(const char* name, const char* help, frame& into) {
@@ -270,42 +183,6 @@ option_row format_row(text_format& into, const char* help) {
           {"csv", text_format::csv}, {"jsonl", text_format::jsonl}, {"text", text_format::text}});
 }
 
-option_rows baud_row(common_options& options) {
-  return in_group("Device", {number_row("--baud", "RATE", "Baud rate (searched, or by --model)",
-                                        options.expected.baud, 1U, 10'000'000U)});
-}
-
-option_row model_row(common_options& options) {
-  return value_row("--model", "MODEL", "x4, x2, ...; x4! insists (searched, or as a file shows)",
-                   options.expected.model, [&insists = options.expected.insists](std::string word) {
-                     insists = word.ends_with('!');
-                     if (insists) word.pop_back();
-                     const g4lidar::model* const found = g4lidar::model_named(word);
-                     if (found != nullptr) return found;
-                     throw bad_value(g4lidar::why_no_model(word));
-                   });
-}
-
-option_row listen_row(common_options& options) {
-  return flag_row("--listen", "Only listen: not a byte is sent", options.expected.listens);
-}
-
-option_row all_ports_row(common_options& options) {
-  option_row row =
-      flag_row("--all-ports", "Without a name: look at all ports, not only at a CP2102",
-               options.expected.all_ports);
-  row.group = "Device";
-  return row;
-}
-
-option_row zero_row(common_options& options) {
-  return value_row("--zero-angle", "DEG", "Added to all angles, not the answer to command 93",
-                   options.expected.zero, [](const std::string& word) {
-                     const double cdeg = std::round(100.0 * number_of(word, -360.0, 360.0));
-                     return std::optional(g4lidar::zero_angle{static_cast<std::int32_t>(cdeg)});
-                   });
-}
-
 option_rows device_rows(common_options& options) {
   const choices<loss_rule> rules{
       {"exit", loss_rule::exit}, {"wait", loss_rule::wait}, {"reconnect", loss_rule::reconnect}};
@@ -314,20 +191,13 @@ option_rows device_rows(common_options& options) {
   const std::string help = "If the device is lost; wait: also at the start (" + usual->first + ")";
   return joined(
       in_group("Device", {choice_row("--on-loss", help.c_str(), options.on_loss.given, rules)}),
-      baud_row(options), in_group("Device", {model_row(options), zero_row(options)}),
-      in_group("Device",
-               {listen_row(options), flag_row("--leave-dtr", "Do not set the line DTR of the port",
-                                              options.expected.leaves_dtr)}),
-      all_ports_row(options));
+      rows_of("Device",
+              {"baud", "model", "zero_angle", "listen_only", "leave_dtr", "probe_all_ports"},
+              options.expected));
 }
 
-option_row loop_row(bool& into) { return flag_row("--loop", "Start again at the end", into); }
-
 option_rows player_rows(double& speed, bool& loops) {
-  return in_group("Recordings",
-                  {number_row("--playback-speed", "FACTOR", "1: as recorded, 0.5: half as fast (1)",
-                              speed, 0.01, 100.0),
-                   loop_row(loops)});
+  return joined(rows_of("Recordings", {"speed"}, speed), rows_of("Recordings", {"loop"}, loops));
 }
 
 option_row json_row(common_options& options) {

@@ -11,8 +11,9 @@
 #include <vector>
 
 #include "exit_code.hpp"
-#include "g4lidar/filter.hpp"
+#include "g4lidar/filter_text.hpp"
 #include "g4lidar/grid.hpp"
+#include "g4lidar/lidar_options.hpp"
 #include "g4lidar/motion.hpp"
 #include "g4lidar/point.hpp"
 #include "g4lidar/recording/writer.hpp"
@@ -57,30 +58,16 @@ struct loss_choice {
   std::optional<loss_rule> given;     ///< Of --on-loss.
 };
 
-/// What is at the source.
-struct expected_device {
-  std::uint32_t baud = 0;  ///< 0: the usual rate of the model, or searched.
-  /// What sends the bytes; null: as a file shows, or searched.
-  const g4lidar::model* model = nullptr;
-  std::optional<g4lidar::zero_angle> zero;  ///< Of --zero-angle.
-  bool insists = false;                     ///< The model is certain: --model WORD!
-  bool listens = false;                     ///< Not a byte is sent.
-  bool leaves_dtr = false;                  ///< DTR is not set.
-  bool all_ports = false;
-};
-
-struct common_options {
+/// The filters are those of filter_settings: without a frame, which is below, and a mask.
+struct common_options : filter_settings {
   std::string source;        ///< Empty: the only lidar.
   std::string output = "-";  ///< `-`: standard output.
-  expected_device expected;
+  lidar_options
+      expected;  ///< How it is opened: all that the user gives, but loss, playback and settings.
   std::uint64_t count = 0;               ///< The largest number of records; 0: no limit.
   std::chrono::nanoseconds duration{0};  ///< 0: no limit.
   std::chrono::nanoseconds idle{0};      ///< The longest time without data; 0: no limit.
-  point_filter filter;                   ///< Without its frame and ignored sectors: see below.
-  std::vector<sector> ignored;
-  std::string mask;  ///< The file of --mask; empty: none.
-  mark_limits marks;
-  grid_options grid;  ///< Of --no-return and --near-as; its frame is not used.
+  std::string mask;                      ///< The file of --mask; empty: none.
   deskewing deskew = deskewing::none;
   std::string odometry;  ///< The file of --odometry; empty: that of the recording.
   std::optional<mounting> mount;
@@ -113,8 +100,6 @@ using shared_options = std::shared_ptr<common_options>;
 [[nodiscard]] option_row near_row(std::optional<near_limits>& into);
 /// --no-return, --near-as.
 [[nodiscard]] option_rows grid_rows(grid_options& into);
-/// --order.
-[[nodiscard]] option_row order_row(scan_order& into);
 /// Logs for which program the order of time is not.
 void note_order(scan_order chosen);
 /// "X,Y,DEG" or "X,Y,DEG,down" in metres and degrees. Throws bad_value.
@@ -123,31 +108,18 @@ void note_order(scan_order chosen);
 [[nodiscard]] option_row mount_row(common_options& options);
 /// --odometry, --mount.
 [[nodiscard]] option_rows motion_rows(common_options& options);
-/// --deskew.
-[[nodiscard]] option_row deskew_row(common_options& options);
 /// --frame, --unit, --time.
 [[nodiscard]] option_rows shape_rows(common_options& options);
 [[nodiscard]] option_row time_row(common_options& options);
 [[nodiscard]] option_row frame_row(const char* name, const char* help, g4lidar::frame& into);
 /// --format csv|jsonl|text.
 [[nodiscard]] option_row format_row(text_format& into, const char* help = "Output format (text)");
-/// --loop.
-[[nodiscard]] option_row loop_row(bool& into);
 /// --playback-speed and --loop of a recording.
 [[nodiscard]] option_rows player_rows(double& speed, bool& loops);
 /// --json.
 [[nodiscard]] option_row json_row(common_options& options);
 /// --compress.
 [[nodiscard]] option_row compress_row(packing& into);
-[[nodiscard]] option_rows baud_row(common_options& options);
-/// --model.
-[[nodiscard]] option_row model_row(common_options& options);
-/// --listen.
-[[nodiscard]] option_row listen_row(common_options& options);
-/// --all-ports.
-[[nodiscard]] option_row all_ports_row(common_options& options);
-/// --zero-angle.
-[[nodiscard]] option_row zero_row(common_options& options);
 /// --on-loss with options.on_loss.usual as default, --baud, --model, --zero-angle, --listen, --all-ports.
 [[nodiscard]] option_rows device_rows(common_options& options);
 

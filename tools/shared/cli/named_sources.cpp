@@ -53,11 +53,12 @@ option_row named_source_arguments(std::vector<std::string>& into, const char* on
   return row;
 }
 
-option_row named_mount_row(const char* help, std::vector<named_mounting>& into) {
-  option_row row{"--mount", "X,Y,DEG[,down]", help, [&into](const std::string& word) {
-                   const auto [name, place] = split_name(word);
-                   into.emplace_back(name, mounting_of(place));
-                 }};
+option_row named_mount_row(std::vector<named_mounting>& into) {
+  option_row row = row_of(*find_parameter("mount"), [&into](const std::string& word) {
+    const auto [name, place] = split_name(word);
+    into.emplace_back(name, mounting_of(place));
+  });
+  row.help = "Where the lidar is on the robot; NAME=X,Y,DEG: that lidar (0,0,0)";
   row.repeatable = true;
   return row;
 }

@@ -28,7 +28,7 @@ using named_mounting = std::pair<std::string, g4lidar::mounting>;
 /// The arguments "SOURCE" and "NAME=SOURCE", as words for named_sources(). `only`: without one.
 [[nodiscard]] option_row named_source_arguments(std::vector<std::string>& into, const char* only);
 /// --mount of one lidar, or of one of several; may be repeated.
-[[nodiscard]] option_row named_mount_row(const char* help, std::vector<named_mounting>& into);
+[[nodiscard]] option_row named_mount_row(std::vector<named_mounting>& into);
 /// --merge.
 [[nodiscard]] option_row merge_row(bool& into);
 

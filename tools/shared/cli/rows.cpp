@@ -38,7 +38,61 @@ std::int64_t time_of(const std::string& text, double least) {
       "'{}' is not a time such as 10s, 500ms or 2min, above 0 and at most 10 years", text));
 }
 
+/// The name in `text`, a word or limits, that is none of `known`.
+std::string unknown_name(std::string_view text, const std::vector<std::string>& known) {
+  while (!text.empty()) {
+    const std::string_view piece = text.substr(0, text.find(','));
+    text.remove_prefix(std::min(piece.size() + 1, text.size()));
+    std::string name(piece.substr(0, piece.find('=')));
+    if (std::ranges::find(known, name) == known.end()) return name;
+  }
+  return {};
+}
+
+/// The words that the option has on a command line.
+std::vector<std::string> words_of(const g4lidar::parameter& of) {
+  const auto words = of.words.first(of.words.size() - of.node_words);
+  return {words.begin(), words.end()};
+}
+
+void refuse(const std::string& wrong, const g4lidar::parameter& of, const std::string& word) {
+  if (wrong.empty()) return;
+  const auto known = words_of(of);
+  throw bad_value(wrong + did_you_mean(unknown_name(word, known), known));
+}
+
 }  // namespace
+
+option_row row_of(const g4lidar::parameter& of, std::function<void(const std::string&)> take) {
+  option_row row{flag_of(of), std::string(of.form), std::string(of.text), std::move(take)};
+  const bool has_limits = row.value == "LIMITS";  // a flag, whose optional value sets some
+  if (has_limits) row.optional_value = std::exchange(row.value, "");
+  if (!has_limits && !of.words.empty()) {
+    row.value = fmt::format("{}", fmt::join(words_of(of), "|"));
+    row.complete = completion::choices;
+  }
+  if (row.value == "FILE") row.complete = completion::input;
+  const std::string_view usual = of.unset.empty() ? of.usual : of.unset;
+  if (!usual.empty() && usual != "off" && usual != "none") row.help += fmt::format(" ({})", usual);
+  return row;
+}
+
+void store(g4lidar::lidar_options& into, const g4lidar::parameter& of, const std::string& word) {
+  refuse(set_option(into, of, word.empty() ? g4lidar::parameter_value(true) : word), of, word);
+}
+
+void store(g4lidar::filter_settings& into, const g4lidar::parameter& of, const std::string& word) {
+  refuse(set_filter(into, of.name, word), of, word);
+}
+
+std::size_t word_number(const g4lidar::parameter& of, const std::string& word) {
+  const auto known = words_of(of);
+  const auto at = std::ranges::find(known, word);
+  if (at == known.end()) {
+    refuse(fmt::format("'{}' is not one of {}", word, fmt::join(known, ", ")), of, word);
+  }
+  return static_cast<std::size_t>(at - known.begin());
+}
 
 std::chrono::nanoseconds duration_of(const std::string& text) {
   return std::chrono::nanoseconds(time_of(text, 1.0));

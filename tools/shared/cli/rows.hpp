@@ -7,17 +7,22 @@
 
 #include <charconv>
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <initializer_list>
 #include <iterator>
 #include <optional>
 #include <ranges>
 #include <string>
 #include <string_view>
 #include <system_error>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
+#include "g4lidar/filter_text.hpp"
+#include "g4lidar/option_table.hpp"
 #include "suggestion.hpp"
 #include "verbs.hpp"
 
@@ -114,12 +119,6 @@ template <class Target, class Value>
                    [least, most](const std::string& word) { return number_of(word, least, most); });
 }
 
-/// --sample-rate: samples a second of raw bytes.
-[[nodiscard]] inline option_row sample_rate_row(std::optional<std::uint32_t>& into) {
-  return number_row("--sample-rate", "HZ", "Samples per second of raw bytes (as the model)", into,
-                    1U, 1'000'000U);
-}
-
 /// The kinds of fault of a simulated lidar.
 [[nodiscard]] std::vector<std::string> fault_names();
 
@@ -131,6 +130,49 @@ template <class Target, class Value>
                              [known](const std::string& word) { return choice_of(word, known); });
   row.complete = completion::choices;
   return row;
+}
+
+/// The row of an option of the table of the library, with its name, value and text.
+[[nodiscard]] option_row row_of(const g4lidar::parameter& of,
+                                std::function<void(const std::string&)> take);
+
+// How a word is stored, as the option of the table states. Each throws bad_value.
+void store(g4lidar::lidar_options& into, const g4lidar::parameter& of, const std::string& word);
+void store(g4lidar::filter_settings& into, const g4lidar::parameter& of, const std::string& word);
+/// The number of the word among those of the option.
+[[nodiscard]] std::size_t word_number(const g4lidar::parameter& of, const std::string& word);
+template <class Target>
+void store(Target& into, const g4lidar::parameter& of, const std::string& word) {
+  if constexpr (std::is_same_v<Target, bool>)
+    into = true;
+  else if constexpr (std::is_enum_v<Target>)
+    into = static_cast<Target>(word_number(of, word));
+  else if constexpr (std::is_arithmetic_v<Target>)
+    into = number_of(word, static_cast<Target>(of.range[0]), static_cast<Target>(of.range[1]));
+  else
+    into = word;
+}
+template <class Value>
+void store(std::optional<Value>& into, const g4lidar::parameter& of, const std::string& word) {
+  Value made{};
+  store(made, of, word);
+  into = made;
+}
+
+/// The row of an option of the table, whose value is stored in `into`.
+template <class Target>
+[[nodiscard]] option_row row_of(std::string_view name, Target& into) {
+  const g4lidar::parameter& of = *g4lidar::find_parameter(name);
+  return row_of(of, [&into, &of](const std::string& word) { store(into, of, word); });
+}
+/// Those of several, with a heading in the help.
+template <class Target>
+[[nodiscard]] option_rows rows_of(const char* heading, std::initializer_list<const char*> names,
+                                  Target& into) {
+  option_rows rows;
+  for (const char* const name : names) rows.push_back(row_of(name, into));
+  for (option_row& row : rows) row.group = heading;
+  return rows;
 }
 
 /// `row` with a `check` of each word before it is taken.

@@ -60,15 +60,8 @@ option_rows scan_rows(serve_options& options) {
       "Scans",
       {frame_row("--frame", "Of --fov and --ignore; vendor: clockwise from 0 of the lidar (robot)",
                  options.common.frame),
-       choice_row(
-           "--deskew", "Deskew by the odometry of the source, or by the scans alone",
-           options.common.deskew,
-           choices<deskewing>{{"odometry", deskewing::by_path}, {"scans", deskewing::by_scans}}),
-       merge_row(options.merges),
-       named_mount_row("Where the lidar is on the robot; NAME=X,Y,DEG: that lidar (0,0,0)",
-                       options.mounts),
-       number_row("--grid", "N", "Ranges of each LaserScan (by the model; G4: 720)", options.bins,
-                  1U, 65536U),
+       row_of("deskew", options.common.deskew), merge_row(options.merges),
+       named_mount_row(options.mounts), row_of("grid", options.bins),
        text_row("--frame-id", "NAME", "For Foxglove (laser; base_link of merged scans)",
                 options.frame_id, completion::nothing)});
 }

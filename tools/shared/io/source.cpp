@@ -5,7 +5,6 @@
 #include <sys/stat.h>
 
 #include <algorithm>
-#include <array>
 #include <string_view>
 #include <utility>
 #include <variant>
@@ -141,19 +140,6 @@ std::string alternatives_to(const g4lidar::model& found) {
   return words;
 }
 
-/// The options of the library that not every source can use, and the names by which the user gives them.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 10> option_names{{
-    {"baud", "--baud"},
-    {"listen_only", "--listen"},
-    {"leave_dtr", "--leave-dtr"},
-    {"probe_all_ports", "--all-ports"},
-    {"reconnect", "--on-loss"},
-    {"speed", "--playback-speed"},
-    {"loop", "--loop"},
-    {"range", "--from, --to"},
-    {"raw_sample_rate_hz", "--sample-rate"},
-}};
-
 /// That of --model, or of the name; null: none is named.
 const g4lidar::model* named_model(const common_options& options) {
   const g4lidar::model* const named = value_of(model_in_source(options.source));
@@ -220,28 +206,24 @@ void report_model(const recognised_model& found) { report_model(*found.which, fo
 // What all sources get is left out: the speed 1 of programs that show a recording.
 void refuse_options_of_others(const common_options& options, const lidar_options& how) {
   constexpr double as_recorded = 1.0;
-  const expected_device& expected = options.expected;
-  lidar_options given{.device = options.source,
-                      .probe_all_ports = expected.all_ports,
-                      .listen_only = expected.listens,
-                      .leave_dtr = expected.leaves_dtr,
-                      .baud = expected.baud,
-                      .reconnect = options.on_loss.given.has_value(),
-                      .playback = how.playback,
-                      .raw_sample_rate_hz = how.raw_sample_rate_hz};
+  lidar_options given = options.expected;
+  given.device = options.source;
+  given.reconnect = options.on_loss.given.has_value();
+  given.playback = how.playback;
+  given.raw_sample_rate_hz = how.raw_sample_rate_hz;
   if (given.playback.speed == as_recorded) given.playback.speed = lidar_options().playback.speed;
   const auto wrong = problem_with_source(given);
   if (!wrong) return;
   std::string text = wrong->message();
-  for (const auto& [option, name] : option_names) {
-    const std::string words = fmt::format("configuring {},", option);
-    if (text.starts_with(words)) text.replace(0, words.size(), fmt::format("{},", name));
+  for (const parameter& each : all_parameters()) {
+    const std::string words = fmt::format("configuring {},", each.name);
+    if (text.starts_with(words)) text.replace(0, words.size(), flag_of(each) + ",");
   }
   throw failure(exit_code::usage, text, name_of(wrong->code()));
 }
 
 void refuse_zero_angle(const common_options& options, std::string_view why) {
-  if (options.expected.zero)
+  if (options.expected.zero_angle)
     throw bad_value(fmt::format("--zero-angle: {}; it is for g4-dump dump, scan and convert", why));
 }
 
@@ -260,7 +242,7 @@ const g4lidar::model* model_of(const common_options& options,
   }
   const auto found = model_of_source({.device = options.source,
                                       .model = named,
-                                      .insist_on_model = options.expected.insists,
+                                      .insist_on_model = options.expected.insist_on_model,
                                       .is_cancelled = [] { return interrupt() != 0; }});
   if (interrupt() != 0) throw interrupted();
   return value_of(found);
@@ -270,12 +252,12 @@ lidar_options options_for(const common_options& options, lidar_options how) {
   how.device = options.source;
   how.model = named_model(options);
   if (options.expected.baud != 0) how.baud = options.expected.baud;
-  how.listen_only = options.expected.listens;
-  how.leave_dtr = options.expected.leaves_dtr;
+  how.listen_only = options.expected.listen_only;
+  how.leave_dtr = options.expected.leave_dtr;
   refuse_options_of_others(options, how);
-  how.zero_angle = options.expected.zero;
-  how.probe_all_ports = options.expected.all_ports;
-  how.insist_on_model = options.expected.insists;
+  how.zero_angle = options.expected.zero_angle;
+  how.probe_all_ports = options.expected.probe_all_ports;
+  how.insist_on_model = options.expected.insist_on_model;
   const loss_rule at_loss = options.on_loss.given.value_or(options.on_loss.usual);
   how.reconnect = at_loss != loss_rule::exit;
   // A file that is missing is not waited for.

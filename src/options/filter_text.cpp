@@ -4,21 +4,17 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
+#include <cstddef>
+#include <cstdint>
 #include <numbers>
 #include <optional>
 #include <utility>
 
 #include "core/number_text.hpp"
+#include "g4lidar/option_table.hpp"
 
 namespace g4lidar {
 namespace {
-
-constexpr std::array<std::string_view, 3> no_return_words{"inf", "nan", "max"};
-constexpr std::array<std::string_view, 2> near_as_words{"nan", "minus-inf"};
-constexpr std::array<std::string_view, 4> speckle_words{"window", "count", "near", "ratio"};
-constexpr std::array<std::string_view, 2> edge_words{"window", "angle"};
-constexpr std::array<std::string_view, 2> near_words{"shortest", "revolutions"};
 
 struct span_of_numbers {
   double from;
@@ -49,17 +45,38 @@ text_result<sector> sector_in(std::string_view text) {
   return sector(range->from, range->to);
 }
 
-/// A limit of marks, and where its value goes.
-struct named_limit {
+/// A limit of a mark, in the order of the words of its parameter.
+struct mark_limit {
   double least;
   double most;
   bool is_whole;
-  std::function<void(double)> take;
+  void (*take)(mark_limits& into, double value);
 };
+constexpr std::array<mark_limit, 4> limits_of_speckle{{
+    {1, max_window, true, [](auto& of, double n) { of.speckle->window = std::size_t(n); }},
+    {1, 2 * max_window, true, [](auto& of, double n) { of.speckle->count = std::size_t(n); }},
+    {0, 100, false, [](auto& of, double m) { of.speckle->near_m = float(m); }},
+    {0, 1, false, [](auto& of, double ratio) { of.speckle->near_ratio = float(ratio); }},
+}};
+constexpr std::array<mark_limit, 2> limits_of_edges{{
+    {1, max_window, true, [](auto& of, double n) { of.edges->window = std::size_t(n); }},
+    {0.1, 45, false, [](auto& of, double deg) { of.edges->least_angle_deg = float(deg); }},
+}};
+constexpr std::array<mark_limit, 2> limits_of_near{{
+    {0.01, 16, false, [](auto& of, double m) { of.near->shortest_mm = float(m * 1e3); }},
+    {0, 1e9, true, [](auto& of, double n) { of.near->revolutions = std::uint32_t(n); }},
+}};
 
-/// "window=2,count=1": those of `limits`, in the order of `names`. Returns why not, or nothing.
-std::string take_limits(std::string_view text, std::span<const std::string_view> names,
-                        std::span<const named_limit> limits) {
+/// "off", "on" or nothing, or limits: "window=2,count=1". Returns why not, or nothing.
+template <class Limits>
+std::string set_mark(filter_settings& into, std::string_view name, std::string_view text,
+                     std::optional<Limits> mark_limits::* mark,
+                     std::span<const mark_limit> limits) {
+  mark_limits made = into.marks;
+  (made.*mark).reset();
+  if (text != "off") (made.*mark).emplace();
+  if (text == "off" || text == "on") text = {};
+  const auto names = filter_words(name);
   while (!text.empty()) {
     const std::string_view piece = text.substr(0, text.find(','));
     text.remove_prefix(std::min(piece.size() + 1, text.size()));
@@ -67,72 +84,27 @@ std::string take_limits(std::string_view text, std::span<const std::string_view>
     const auto found = std::ranges::find(names, piece.substr(0, equals));
     if (found == names.end() || equals == piece.size())
       return in_quotes(piece) + " is not one of " +
-             list_of(names, [](std::string_view name) { return std::string(name) + "=N"; });
-    const named_limit& limit = limits[static_cast<std::size_t>(found - names.begin())];
+             list_of(names, [](std::string_view each) { return std::string(each) + "=N"; });
+    const mark_limit& limit = limits[static_cast<std::size_t>(found - names.begin())];
     const auto value = number_in(piece.substr(equals + 1), limit.least, limit.most);
     if (!value) return value.error();
     if (limit.is_whole && *value != std::floor(*value))
       return in_quotes(piece) + " is not a whole number";
-    limit.take(*value);
+    limit.take(made, *value);
   }
+  into.marks = made;
   return {};
 }
 
-/// Stores a number, times `factor`, in a member of limits.
-template <class Member>
-std::function<void(double)> store_in(Member& into, double factor = 1.0) {
-  return [&into, factor](double value) { into = static_cast<Member>(value * factor); };
-}
-
-std::string set_speckle(std::optional<speckle_limits>& into, std::string_view text) {
-  speckle_limits made;
-  const std::array<named_limit, 4> limits{{{1, max_window, true, store_in(made.window)},
-                                           {1, 2 * max_window, true, store_in(made.count)},
-                                           {0, 100, false, store_in(made.near_m)},
-                                           {0, 1, false, store_in(made.near_ratio)}}};
-  std::string wrong = take_limits(text, speckle_words, limits);
-  if (wrong.empty()) into = made;
-  return wrong;
-}
-
-std::string set_edges(std::optional<edge_limits>& into, std::string_view text) {
-  edge_limits made;
-  const std::array<named_limit, 2> limits{{{1, max_window, true, store_in(made.window)},
-                                           {0.1, 45, false, store_in(made.least_angle_deg)}}};
-  std::string wrong = take_limits(text, edge_words, limits);
-  if (wrong.empty()) into = made;
-  return wrong;
-}
-
-std::string set_near(std::optional<near_limits>& into, std::string_view text) {
-  near_limits made;
-  const std::array<named_limit, 2> limits{{{0.01, 16, false, store_in(made.shortest_mm, 1e3)},
-                                           {0, 1e9, true, store_in(made.revolutions)}}};
-  std::string wrong = take_limits(text, near_words, limits);
-  if (wrong.empty()) into = made;
-  return wrong;
-}
-
-std::string set_marks(mark_limits& into, std::string_view name, std::string_view text) {
-  if (text == "off") {
-    if (name == "speckle") into.speckle.reset();
-    if (name == "edges") into.edges.reset();
-    if (name == "near") into.near.reset();
-    return {};
-  }
-  if (text == "on") text = {};
-  if (name == "speckle") return set_speckle(into.speckle, text);
-  if (name == "edges") return set_edges(into.edges, text);
-  return set_near(into.near, text);
-}
+/// Rounded to a thousandth of a millimetre, so that 0.28 is 280.
+float in_mm(double metres) { return static_cast<float>(std::round(metres * 1e6) / 1e3); }
 
 std::string set_range(point_filter& into, std::string_view text) {
   const auto range = range_in(text, 0.0, 100.0);
   if (!range) return range.error();
   if (range->to < range->from) return in_quotes(text) + " ends before it begins";
-  // Rounded to a thousandth of a millimetre, so that 0.28 is 280.
-  into.least_range_mm = static_cast<float>(std::round(range->from * 1e6) / 1e3);
-  into.greatest_range_mm = static_cast<float>(std::round(range->to * 1e6) / 1e3);
+  into.least_range_mm = in_mm(range->from);
+  into.greatest_range_mm = in_mm(range->to);
   return {};
 }
 
@@ -154,12 +126,9 @@ std::string set_ignored(std::vector<sector>& into, std::string_view text) {
 }  // namespace
 
 std::span<const std::string_view> filter_words(std::string_view name) noexcept {
-  if (name == "speckle") return speckle_words;
-  if (name == "edges") return edge_words;
-  if (name == "near") return near_words;
-  if (name == "no_return") return no_return_words;
-  if (name == "near_as") return near_as_words;
-  return {};
+  const parameter* const known = find_parameter(name);
+  const bool is_filter = known != nullptr && known->kind == parameter_kind::filter;
+  return is_filter ? known->words : std::span<const std::string_view>();
 }
 
 std::variant<mounting, std::string> mounting_in(std::string_view text) {
@@ -181,14 +150,23 @@ std::variant<mounting, std::string> mounting_in(std::string_view text) {
 
 std::string set_filter(filter_settings& into, std::string_view name, std::string_view text) {
   if (name == "range") return set_range(into.filter, text);
+  if (name == "range_min" || name == "range_max") {
+    const auto metres = number_in(text, 0.0, 100.0);
+    if (!metres) return metres.error();
+    (name == "range_min" ? into.filter.least_range_mm : into.filter.greatest_range_mm) =
+        in_mm(*metres);
+    return {};
+  }
   if (name == "ignore") return set_ignored(into.ignored, text);
   if (name == "fov") {
     const auto one = sector_in(text);
     if (one) into.filter.field_of_view = *one;
     return one ? "" : one.error();
   }
-  if (name == "speckle" || name == "edges" || name == "near")
-    return set_marks(into.marks, name, text);
+  if (name == "speckle")
+    return set_mark(into, name, text, &mark_limits::speckle, limits_of_speckle);
+  if (name == "edges") return set_mark(into, name, text, &mark_limits::edges, limits_of_edges);
+  if (name == "near") return set_mark(into, name, text, &mark_limits::near, limits_of_near);
   const auto words = filter_words(name);
   const auto at = std::ranges::find(words, text);
   if (words.empty()) return "there is no filter " + in_quotes(name);
