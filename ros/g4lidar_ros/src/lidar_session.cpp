@@ -156,7 +156,7 @@ std::string lidar_session::change(const std::vector<g4lidar::named_value>& wante
 }
 
 g4lidar::parameter_value lidar_session::known(const g4lidar::parameter& row) const {
-  const g4lidar::parameter_value first = service_->value(0, row);
+  g4lidar::parameter_value first = service_->value(0, row);
   for (std::size_t i = 1; i < service_->size(); ++i) {
     if (service_->value(i, row) != first) return {};
   }
