@@ -11,6 +11,7 @@ A launch file that includes it twice puts each into a GroupAction, as arguments 
 
 import os
 import re
+from typing import List
 
 import yaml
 from ament_index_python.packages import PackageNotFoundError, get_package_share_directory
@@ -26,7 +27,8 @@ SHARE = get_package_share_directory("g4lidar_ros")
 DEFAULTS = os.path.join(SHARE, "config", "lidar.yaml")
 # The parameters that are also arguments, with the comments of that file. One that is not given stays as in the file.
 with open(DEFAULTS) as file:
-    PARAMETERS = dict(re.findall(r"^    (\w+): .*?# (.*)", file.read(), re.M))
+    PARAMETERS = dict(re.findall(r"^    (?:# )?(\w+): .*?# (.*)", file.read(), re.M))
+ARRAYS = ("sources", "mounts")
 
 
 def is_true(name, context):
@@ -41,7 +43,8 @@ def given_parameters(context):
     words = {name: LaunchConfiguration(name).perform(context) for name in PARAMETERS}
     if is_true("sim", context):
         words["source"] = words["source"] or "sim:"
-    made = {name: ParameterValue(word, value_type=str) for name, word in words.items() if word}
+    made = {name: ParameterValue(word, value_type=List[str] if name in ARRAYS else str)
+            for name, word in words.items() if word}
     if LaunchConfiguration("use_sim_time").perform(context):
         made["use_sim_time"] = is_true("use_sim_time", context)
     return made

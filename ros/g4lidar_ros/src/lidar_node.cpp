@@ -73,20 +73,13 @@ LidarNode::LidarNode(const rclcpp::NodeOptions& options)
   timer_ = create_wall_timer(100ms, [this] { update(); });
 }
 
-LidarNode::~LidarNode() {
-  timer_.reset();
-  running_.reset();
-  bond_.reset();
-  diagnostics_.reset();
-  parameters_.reset();
-  session_.reset();
-}
+LidarNode::~LidarNode() = default;
 
 LidarNode::CallbackReturn LidarNode::on_configure(const rclcpp_lifecycle::State& /*previous*/) {
   try {
-    const session_options how = parameters_->for_session();
+    session_options how = parameters_->for_session();
     if (!topics_) topics_ = std::make_unique<lidar_topics>(*this);
-    session_ = std::make_shared<lidar_session>(*this, *topics_, how);
+    session_ = std::make_shared<lidar_session>(*this, *topics_, std::move(how));
     if (const auto started = session_->start(); !started)
       throw std::runtime_error(started.error().message());
   } catch (const std::exception& wrong) {
@@ -102,18 +95,17 @@ LidarNode::CallbackReturn LidarNode::on_configure(const rclcpp_lifecycle::State&
 LidarNode::CallbackReturn LidarNode::on_activate(const rclcpp_lifecycle::State& previous) {
   session_->restart_file();
   if (session_->failure()) return CallbackReturn::ERROR;
-  is_allowed_ = true;
-  standby_ = {};
+  session_->set_standby(get_parameter("standby").as_bool());
   if (const double period_s = get_parameter("bond_heartbeat_period").as_double(); period_s > 0)
     bond_ = bond_of(*this, period_s);
   const CallbackReturn done = LifecycleNode::on_activate(previous);  // activates the publishers
-  if (!get_parameter("standby").as_bool()) session_->rest(false);
+  session_->allow(true);
   return done;
 }
 
 LidarNode::CallbackReturn LidarNode::on_deactivate(const rclcpp_lifecycle::State& previous) {
   bond_.reset();
-  session_->rest(true, rest_time);
+  session_->allow(false, rest_time);
   const CallbackReturn done = LifecycleNode::on_deactivate(previous);
   return session_->failure() ? CallbackReturn::ERROR : done;
 }
@@ -147,15 +139,10 @@ void LidarNode::update() {
     is_active ? deactivate() : cleanup();
     return;
   }
-  if (!is_active) return;
-  if (session_->status().state == g4lidar::reader_state::ended) {
-    RCLCPP_INFO(get_logger(), "the recording is at its end; activate it again to repeat it");
-    deactivate();
-    return;
-  }
-  const bool is_needed = !get_parameter("standby").as_bool() || session_->is_wanted();
-  const bool rests = standby_.rests(is_needed, std::chrono::steady_clock::now());
-  session_->rest(rests || !is_allowed_);
+  session_->set_standby(get_parameter("standby").as_bool());
+  if (!is_active || !session_->has_ended()) return;
+  RCLCPP_INFO(get_logger(), "the recording is at its end; activate it again to repeat it");
+  deactivate();
 }
 
 void LidarNode::allow(bool runs, trigger::Response& answer) {
@@ -164,8 +151,7 @@ void LidarNode::allow(bool runs, trigger::Response& answer) {
     answer.message = "the node is not active";
     return;
   }
-  is_allowed_ = runs;
-  update();
+  session_->allow(runs);
   if (!runs)
     answer.message = "the motor rests until start is called";
   else if (get_parameter("standby").as_bool())

@@ -6,17 +6,10 @@
 #include <string_view>
 #include <utility>
 
-#include "g4lidar/diagnostics/diagnostic_message.hpp"
 #include "parameter_declarations.hpp"
 
 namespace g4lidar_ros {
 namespace {
-
-void fill(diagnostic_updater::DiagnosticStatusWrapper& status,
-          const g4lidar::diagnostic_status& from) {
-  status.summary(static_cast<unsigned char>(from.level), from.message);
-  for (const auto& [name, value] : from.values) status.add(name, value);
-}
 
 /// With a namespace, statuses have it in their names, so that those of several lidars differ.
 rclcpp_lifecycle::LifecycleNode* with_full_name(rclcpp_lifecycle::LifecycleNode& node) {
@@ -33,42 +26,49 @@ rclcpp_lifecycle::LifecycleNode* with_full_name(rclcpp_lifecycle::LifecycleNode&
 node_diagnostics::node_diagnostics(rclcpp_lifecycle::LifecycleNode& node)
     : updater_(with_full_name(node)) {
   updater_.setHardwareID("none");
-  updater_.add("state", this, &node_diagnostics::report_state);
-  for (std::size_t i = 0; i < g4lidar::diagnostic_stage_count; ++i) {
-    const auto which = static_cast<g4lidar::diagnostic_stage>(i);
-    updater_.add(std::string(name_of(which)),
-                 [this, which](wrapper& status) { report_stage(which, status); });
+  std::vector<std::string> sources = node.get_parameter("sources").as_string_array();
+  sources.resize(std::max<std::size_t>(1, sources.size()));
+  for (std::size_t i = 0; i < sources.size(); ++i) {
+    const std::string name = sources[i].substr(0, sources[i].find('='));
+    add_lidar(i, name.empty() ? "" : name + " ");
   }
-  updater_.add("counts", this, &node_diagnostics::report_counts);
-  updater_.add("deskewing", this, &node_diagnostics::report_deskewing);
+  if (sources.size() > 1) add("merging");
+  add("deskewing");
   updater_.add("topics", this, &node_diagnostics::report_topics);
 }
 
-void node_diagnostics::report_state(wrapper& status) {
+void node_diagnostics::add_lidar(std::size_t index, const std::string& prefix) {
+  const std::string state = prefix + "state";
+  updater_.add(state, [=, this](wrapper& status) { report_state(index, state, status); });
+  for (std::size_t i = 0; i < g4lidar::diagnostic_stage_count; ++i)
+    add(prefix + std::string(name_of(static_cast<g4lidar::diagnostic_stage>(i))));
+  add(prefix + "counts");
+}
+
+void node_diagnostics::add(const std::string& name) {
+  updater_.add(name, [this, name](wrapper& status) { report(name, status); });
+}
+
+void node_diagnostics::report(const std::string& name, wrapper& status) const {
   if (!session_) return status.summary(wrapper::OK, "unconfigured");
-  const g4lidar::reader_status now = session_->status();
-  if (now.information && now.information->is_known())
-    updater_.setHardwareID(std::string(now.information->serial_number()));
-  const bool is_end = now.state == g4lidar::reader_state::ended && !session_->failure();
-  fill(status, status_of(now, now.why && !is_end ? now.why->message() : ""));
+  const auto from =
+      std::ranges::find(found_, "g4lidar: " + name, &g4lidar::diagnostic_status::name);
+  if (from == found_.end()) return status.summary(wrapper::OK, "ok");
+  status.summary(static_cast<unsigned char>(from->level), from->message);
+  if (!from->hardware_id.empty()) status.hardware_id = from->hardware_id;
+  for (const auto& [key, value] : from->values) status.add(key, value);
+}
+
+void node_diagnostics::report_state(std::size_t lidar, const std::string& name, wrapper& status) {
+  if (session_ && lidar == 0) found_ = session_->service().diagnosis();
+  report(name, status);
+  if (!session_ || lidar >= session_->service().size()) return;
+  if (session_->service().size() == 1) updater_.setHardwareID(status.hardware_id);
   for (const g4lidar::parameter& each : g4lidar::all_parameters()) {
-    const g4lidar::parameter_value known = session_->known().value(each);
+    const g4lidar::parameter_value known = session_->service().value(lidar, each);
     if (has_state(each) && known.index() != 0)
       status.add(std::string(each.name), rclcpp::to_string(shown(each, known)));
   }
-}
-
-void node_diagnostics::report_stage(g4lidar::diagnostic_stage which, wrapper& status) {
-  if (!session_) return status.summary(wrapper::OK, "unconfigured");
-  const auto stages = session_->stages();
-  const auto at = std::ranges::find(stages, which, &g4lidar::stage_report::stage);
-  if (at == stages.end()) return status.summary(wrapper::OK, "ok");
-  fill(status, g4lidar::status_of(*at, ""));
-}
-
-void node_diagnostics::report_counts(wrapper& status) {
-  if (!session_) return status.summary(wrapper::OK, "unconfigured");
-  fill(status, g4lidar::status_of(session_->counts(), ""));
 }
 
 void node_diagnostics::report_topics(wrapper& status) {
@@ -88,17 +88,6 @@ void node_diagnostics::report_topics(wrapper& status) {
     status.summary(wrapper::WARN, "a subscriber wants a quality of service that is not offered");
   else
     status.summary(wrapper::OK, "ok");
-}
-
-void node_diagnostics::report_deskewing(wrapper& status) {
-  const std::uint64_t now = session_ ? session_->points_not_deskewed() : 0;
-  const bool is_bad = now > std::exchange(not_deskewed_, now);
-  if (is_bad)
-    status.summary(wrapper::WARN,
-                   "points are not deskewed: the motion at their times is not known");
-  else
-    status.summary(wrapper::OK, "ok");
-  status.add("points_not_deskewed", now);
 }
 
 }  // namespace g4lidar_ros

@@ -4,6 +4,8 @@
 
 #include <cstdint>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include <diagnostic_updater/diagnostic_updater.hpp>
 #include <rclcpp_lifecycle/lifecycle_node.hpp>
@@ -12,25 +14,28 @@
 
 namespace g4lidar_ros {
 
-/// "state" with the model and the settings, the stages of a running_diagnosis, "counts" and "topics", once a second. *Single thread*: that of the node.
+/// "state" with the model and the settings, stages and "counts" of each lidar, with its name; "merging", "deskewing" and
+/// "topics", once a second. *Single thread*: that of the node.
 class node_diagnostics {
  public:
+  /// After the parameters were declared.
   explicit node_diagnostics(rclcpp_lifecycle::LifecycleNode& node);
 
-  /// The lidar that is reported; null: none is open.
-  void follow(std::shared_ptr<const lidar_session> session) { session_ = std::move(session); }
+  /// The lidars that are reported; null: none is open.
+  void follow(std::shared_ptr<lidar_session> session) { session_ = std::move(session); }
 
  private:
   using wrapper = diagnostic_updater::DiagnosticStatusWrapper;
-  void report_state(wrapper& status);
-  void report_stage(g4lidar::diagnostic_stage which, wrapper& status);
-  void report_counts(wrapper& status);
+  void add_lidar(std::size_t index, const std::string& prefix);
+  /// A status of the service, which may have none of this name.
+  void add(const std::string& name);
+  void report(const std::string& name, wrapper& status) const;
+  void report_state(std::size_t lidar, const std::string& name, wrapper& status);
   void report_topics(wrapper& status);
-  void report_deskewing(wrapper& status);
 
-  std::shared_ptr<const lidar_session> session_;
-  std::uint64_t refused_ = 0;       // at the last report
-  std::uint64_t not_deskewed_ = 0;  // the same
+  std::shared_ptr<lidar_session> session_;
+  std::vector<g4lidar::diagnostic_status> found_;  // by the service, for this report
+  std::uint64_t refused_ = 0;                      // at the last report
   diagnostic_updater::Updater updater_;
 };
 

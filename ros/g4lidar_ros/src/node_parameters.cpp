@@ -6,11 +6,13 @@
 #include <cstddef>
 #include <stdexcept>
 #include <string_view>
+#include <tuple>
 #include <utility>
 #include <variant>
 
 #include <rclcpp/version.h>
 
+#include "g4lidar/export/mask.hpp"
 #include "g4lidar/filter_text.hpp"
 #include "g4lidar/lidar_parameters.hpp"
 #include "g4lidar/source.hpp"
@@ -18,6 +20,10 @@
 
 namespace g4lidar_ros {
 namespace {
+
+/// Of the names of lidars.
+constexpr const char* name_characters =
+    "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_";
 
 /// The text of the filter fov. Throws std::invalid_argument if two fields of view are given.
 std::string field_of_view(const std::string& fov, double from, double to) {
@@ -47,6 +53,35 @@ std::size_t word_in(const rclcpp::Parameter& given) {
       g4lidar::limits_of(*g4lidar::find_parameter(given.get_name())).constraints;
   throw std::invalid_argument(given.get_name() + ": '" + given.as_string() + "' is not one of " +
                               all);
+}
+
+/// The mask in this file. Throws std::invalid_argument.
+g4lidar::mask mask_in(const std::string& path) {
+  auto made = g4lidar::load_mask(path);
+  if (const auto* wrong = std::get_if<std::string>(&made)) throw std::invalid_argument(*wrong);
+  return std::get<g4lidar::mask>(std::move(made));
+}
+
+/// The place of a lidar as a parameter gives it. Throws std::invalid_argument.
+g4lidar::mounting place_in(const std::string& parameter, const std::string& text) {
+  const auto place = g4lidar::mounting_in(text);
+  if (const auto* wrong = std::get_if<std::string>(&place))
+    throw std::invalid_argument(parameter + ": " + *wrong);
+  return std::get<g4lidar::mounting>(place);
+}
+
+/// The names and the values of "NAME=VALUE" each. Throws std::invalid_argument.
+std::vector<std::pair<std::string, std::string>> named_words(const rclcpp::Parameter& given) {
+  std::vector<std::pair<std::string, std::string>> made;
+  for (const std::string& word : given.as_string_array()) {
+    const std::size_t end = word.find('=');
+    const std::string name = word.substr(0, end);
+    const bool is_name = name.find_first_not_of(name_characters) == std::string::npos;
+    if (!word.empty() && (end == std::string::npos || name.empty() || !is_name))
+      throw std::invalid_argument(given.get_name() + ": '" + word + "' is not NAME=VALUE");
+    if (!word.empty()) made.emplace_back(name, word.substr(end + 1));
+  }
+  return made;
 }
 
 /// What the lidar is to be set to; nothing: to nothing. Throws std::invalid_argument with the possible values.
@@ -105,27 +140,24 @@ void node_parameters::warn_about_unknown_ones() const {
 
 void node_parameters::take_motion(session_options& into) const {
   motion_options& motion = into.motion;
-  motion.base_frame = node_.get_parameter("base_frame").as_string();
-  motion.odometry_frame = node_.get_parameter("odometry_frame").as_string();
+  motion.base_frame = text("base_frame");
+  motion.odometry_frame = text("odometry_frame");
   motion.is_turned = into.order == g4lidar::scan_order::time;
-  if (const std::string text = node_.get_parameter("mount").as_string(); !text.empty()) {
-    const auto place = g4lidar::mounting_in(text);
-    if (const auto* wrong = std::get_if<std::string>(&place))
-      throw std::invalid_argument("mount: " + *wrong);
-    motion.mount = std::get<g4lidar::mounting>(place);
-    into.shaping.mount = *motion.mount;
-  }
+  if (into.lidars.size() == 1) motion.mount = into.lidars.front().mount;
   motion.from = static_cast<motion_source>(word_in(node_.get_parameter("deskew")));
   if (motion.from == motion_source::none) return;
   if (motion.is_turned)
     throw std::invalid_argument(
         "order: time cannot be used with deskew: deskewed points have one time");
-  into.shaping.deskew = motion.from == motion_source::scans ? g4lidar::deskewing::by_scans
+  into.service.deskew = motion.from == motion_source::scans ? g4lidar::deskewing::by_scans
                                                             : g4lidar::deskewing::by_path;
+  into.service.other_odometry_place =
+      motion.from == motion_source::tf
+          ? "from " + motion.odometry_frame + " to " + motion.base_frame + " in tf"
+          : "on " + node_.get_node_topics_interface()->resolve_topic_name("odom");
 }
 
 void node_parameters::take_opening(g4lidar::lidar_options& into) const {
-  into.device = node_.get_parameter("source").as_string();
   for (const g4lidar::parameter& each : g4lidar::all_parameters()) {
     const bool is_opening = each.access != nullptr && each.setting == nullptr;
     if (!is_opening || !each.is_of(g4lidar::option_door::node)) continue;
@@ -141,31 +173,66 @@ void node_parameters::take_opening(g4lidar::lidar_options& into) const {
   if (into.playback.speed == 0) into.playback.speed = 1;
   into.reconnect = true;
   into.device_wait = connect_timeout();
+  into.is_cancelled = [of = node_.get_node_base_interface()->get_context()] {
+    return !of->is_valid();
+  };
+}
+
+std::vector<g4lidar::service_lidar> node_parameters::lidars() const {
+  const auto sources = named_words(node_.get_parameter("sources"));
+  std::vector<g4lidar::service_lidar> made(std::max<std::size_t>(1, sources.size()));
+  made.front().options.device = text("source");
+  for (std::size_t i = 0; i < sources.size(); ++i) {
+    std::tie(made[i].name, made[i].options.device) = sources[i];
+    if (is_file(made[i].options.device))
+      throw std::invalid_argument("sources: a file cannot be merged, as it has its own clock");
+  }
+  const bool is_single = !text("source").empty() || !text("mount").empty() || sources.size() == 1;
+  if (!sources.empty() && (is_single || text("order") == "time"))
+    throw std::invalid_argument(
+        "sources: two lidars or more, and without source, mount and order: time");
+  if (!text("mount").empty()) made.front().mount = place_in("mount", text("mount"));
+  for (const auto& [name, place] : named_words(node_.get_parameter("mounts"))) {
+    const auto lidar = std::ranges::find(made, name, &g4lidar::service_lidar::name);
+    if (lidar == made.end())
+      throw std::invalid_argument("mounts: there is no '" + name + "' in sources");
+    lidar->mount = place_in("mounts", place);
+  }
+  for (g4lidar::service_lidar& each : made) take_opening(each.options);
+  return made;
 }
 
 session_options node_parameters::for_session() const {
   if (std::isnan(node_.get_parameter("connect_timeout").as_double()))  // a range lets it pass
     throw std::invalid_argument("connect_timeout: it is not a number");
   session_options made;
-  take_opening(made.lidar);
-  made.frame_id = node_.get_parameter("frame_id").as_string();
+  made.lidars = lidars();
+  made.frame_id = text(made.lidars.size() == 1 ? "frame_id" : "base_frame");
   if (const auto bins = node_.get_parameter("grid").as_int(); bins > 0)
     made.bins = static_cast<std::uint32_t>(bins);
   made.order = static_cast<g4lidar::scan_order>(word_in(node_.get_parameter("order")));
   take_motion(made);
-  made.mask = node_.get_parameter("mask").as_string();
-  made.shaping.restamps = true;  // nobody is to deskew the points of a message again
+  made.service.mask = mask_in(text("mask"));
+  made.service.filters.filter.in = g4lidar::frame::robot;
+  made.service.restamps = true;  // nobody is to deskew the points of a message again
+  made.service.reads_settings = true;
+  made.service.is_standby = true;
   made.filters = filters({});
   for (const g4lidar::parameter& each : g4lidar::all_parameters()) {
     if (each.setting == nullptr) continue;
     const std::string name(each.name);
     const auto value = wanted_in(each, node_.get_parameter(name));
     if (value.index() == 0) continue;
-    static_cast<void>(g4lidar::set_option(made.lidar, each, value));
-    made.settings.emplace_back(name, value);
+    for (g4lidar::service_lidar& lidar : made.lidars) {
+      static_cast<void>(g4lidar::set_option(lidar.options, each, value));
+      lidar.settings.emplace_back(name, value);
+    }
   }
-  if (const auto wrong = g4lidar::problem_with(made.lidar))
-    throw std::invalid_argument(wrong->message());
+  for (g4lidar::service_lidar& each : made.lidars) {
+    if (const auto wrong = g4lidar::problem_with(each.options))
+      throw std::invalid_argument(wrong->message());
+    each.options = g4lidar::usable_options(each.options);
+  }
   return made;
 }
 
@@ -179,7 +246,7 @@ void node_parameters::update(bool is_news) {
   is_update_ = true;
   for (const g4lidar::parameter& each : g4lidar::all_parameters()) {
     if (!has_state(each)) continue;
-    const auto known = session_ ? session_->known().value(each) : g4lidar::parameter_value();
+    const auto known = session_ ? session_->known(each) : g4lidar::parameter_value();
     node_.set_parameter({std::string(state_prefix).append(each.name), shown(each, known)});
   }
   is_update_ = false;
@@ -225,15 +292,13 @@ std::string node_parameters::refuse(const changes& wanted) {
   std::erase_if(values, [&](const auto& each) {
     return std::ranges::find(touched, each.first) == touched.end();
   });
+  if (session_) {
+    values.insert(values.end(), settings.begin(), settings.end());
+    return session_->change(values);
+  }
   g4lidar::scan_shaper shaper;
   g4lidar::lidar_parameters trial({}, {}, {}, shaper);
-  if (session_ && !values.empty()) static_cast<void>(trial.change(nullptr, filters({})));
-  if (std::string wrong = trial.change(nullptr, values); !wrong.empty() || !session_) return wrong;
-  if (!settings.empty()) {
-    if (std::string wrong = session_->change(settings); !wrong.empty()) return wrong;
-  }
-  if (!values.empty()) session_->filter(std::move(values));
-  return {};
+  return trial.change(nullptr, values);
 }
 
 std::chrono::milliseconds node_parameters::connect_timeout() const {

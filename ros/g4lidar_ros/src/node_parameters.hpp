@@ -20,7 +20,7 @@ class node_parameters {
  public:
   explicit node_parameters(rclcpp_lifecycle::LifecycleNode& node);
 
-  /// Those that are used when the lidar is opened. Throws std::invalid_argument, which names the parameter.
+  /// Those that are used when lidars are opened. Throws std::invalid_argument, which names the parameter.
   [[nodiscard]] session_options for_session() const;
   /// The lidar whose parameters they are; null: none is open, and they are used when one is opened.
   void follow(std::shared_ptr<lidar_session> session);
@@ -30,9 +30,14 @@ class node_parameters {
  private:
   using changes = std::vector<rclcpp::Parameter>;
   void warn_about_unknown_ones() const;
-  /// The source and how it is opened.
-  void take_opening(g4lidar::lidar_options& into) const;
   void take_motion(session_options& into) const;
+  /// How a lidar is opened.
+  void take_opening(g4lidar::lidar_options& into) const;
+  /// Those of `source` or `sources`.
+  [[nodiscard]] std::vector<g4lidar::service_lidar> lidars() const;
+  [[nodiscard]] std::string text(const std::string& parameter) const {
+    return node_.get_parameter(parameter).as_string();
+  }
   /// How long the lidar may be missing.
   [[nodiscard]] std::chrono::milliseconds connect_timeout() const;
   /// Each gets the type of its parameter, if it can be converted.

@@ -106,6 +106,17 @@ void declare_parameters(rclcpp_lifecycle::LifecycleNode& node) {
     node.declare_parameter(std::string(state_prefix).append(each.name), shown(each, {}), made,
                            true);
   }
+  descriptor merged;
+  merged.read_only = true;
+  const value nothing(std::vector<std::string>{""});  // an empty array in a file has no type
+  merged.name = "sources";
+  merged.description = "Lidars whose scans are merged, in base_frame, instead of source";
+  merged.additional_constraints = "NAME=SOURCE each, two or more; no files";
+  declare(node, nothing, merged);
+  merged.name = "mounts";
+  merged.description = "Where those of sources are on the robot";
+  merged.additional_constraints = "NAME=X,Y,DEG or NAME=X,Y,DEG,down each";
+  declare(node, nothing, merged);
 }
 
 rclcpp::ParameterValue first_value(const g4lidar::parameter& of) {

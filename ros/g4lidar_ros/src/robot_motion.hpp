@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: MIT
-// The motion of the robot: from a recording or a simulated robot, which is published; from odometry, or from tf.
+// The motion of the robot: that of the source is published; that of others is subscribed, as odometry or by tf.
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <mutex>
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -18,17 +16,10 @@
 #include <nav_msgs/msg/odometry.hpp>
 #include <rclcpp_lifecycle/lifecycle_node.hpp>
 
-#include "g4lidar/lidar.hpp"
-#include "g4lidar/odometry_feed.hpp"
-#include "g4lidar/odometry_path.hpp"
+#include "g4lidar/lidar_service.hpp"
 #include "topics.hpp"
 
 namespace g4lidar_ros {
-
-/// The stamp of a time that `ahead_ns` are added to: a stamp of ROS is not negative.
-[[nodiscard]] inline std::int64_t stamp_of(std::int64_t time_ns, std::int64_t ahead_ns) noexcept {
-  return std::max<std::int64_t>(0, time_ns + ahead_ns);
-}
 
 /// From where the motion is known by which points are deskewed, in the order of the words of the parameter deskew.
 enum class motion_source : unsigned char { none, odometry, scans, tf };
@@ -41,36 +32,32 @@ struct motion_options {
   bool is_turned = false;                  ///< The frame of the scans has z down.
 };
 
-/// *Single thread*: that of the reader, except construction.
-class robot_motion {
+/// As a sink, publishes the odometry and the time that the source states. In the thread of a lidar, but for the first two.
+class robot_motion final : public g4lidar::service_sink {
  public:
-  /// Of a lidar whose frame is `frame_id`, and whose source is `source`; adds the topic of its odometry.
   robot_motion(rclcpp_lifecycle::LifecycleNode& node, lidar_topics& topics,
-               const motion_options& options, const std::string& frame_id,
-               const std::string& source);
+               const motion_options& options)
+      : node_(node), topics_(topics), options_(options) {}
+  /// Makes what it needs of ROS, for scans whose frame is `frame_id`. `has_odometry`: the source states the motion.
+  void connect(const std::string& frame_id, bool has_odometry);
 
-  /// Whether the source carries odometry, which needs its points as they come.
-  [[nodiscard]] bool has_odometry() const noexcept { return has_odometry_; }
-  /// The lidar is open. `simulation`: null unless it is simulated.
-  void follow(g4lidar::lidar& device, const g4lidar::sim::simulated_source* simulation);
-  /// Publishes the odometry until the last of these points. `ahead_ns`: the time of stamps minus theirs; nothing: not
-  /// known, and stamps are 0.
-  void follow(std::span<const g4lidar::point> points, std::optional<std::int64_t> ahead_ns);
-  /// The poses of the robot until the end of a scan, by the clock of its points.
-  [[nodiscard]] std::span<const g4lidar::stamped_pose> path_of(
-      const g4lidar::scan& whole, std::optional<std::int64_t> ahead_ns);
+  [[nodiscard]] g4lidar::service_demand wanted() const override { return {}; }
+  void on_odometry(const g4lidar::stamped_odometry& now, std::int64_t stamp_ns) override;
+  void on_time(std::size_t lidar, std::int64_t stamp_ns) override;
+  /// Adds what others state, until the end of a scan. `ahead_ns`: the clock of stamps minus that of the points.
+  void take(g4lidar::odometry_path& into, const g4lidar::scan& whole, std::int64_t ahead_ns);
 
  private:
   void publish(const g4lidar::stamped_odometry& at, std::int64_t stamp_ns);
-  void take_subscribed(std::int64_t ahead_ns);
-  void take_transforms(const g4lidar::scan& whole, std::int64_t ahead_ns);
+  void subscribe();
+  void take_subscribed(g4lidar::odometry_path& into, std::int64_t ahead_ns);
+  void take_transforms(g4lidar::odometry_path& into, const g4lidar::scan& whole,
+                       std::int64_t ahead_ns);
 
   rclcpp_lifecycle::LifecycleNode& node_;
   lidar_topics& topics_;
-  motion_options options_;
-  g4lidar::odometry_feed feed_;
-  bool has_odometry_ = false;
-  g4lidar::odometry_path path_;
+  const motion_options options_;
+  std::int64_t clock_ns_ = 0;  // as published
   std::unique_ptr<tf2_ros::TransformBroadcaster> tf_;
   std::unique_ptr<tf2_ros::StaticTransformBroadcaster> place_;
   std::mutex mutex_;                                   // protects the next one

@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <exception>
 #include <memory>
 #include <string>
 
@@ -63,6 +64,16 @@ class counted_publisher {
   std::shared_ptr<topic_counts> counts_ = std::make_shared<topic_counts>();
   typename rclcpp_lifecycle::LifecyclePublisher<Message>::SharedPtr publisher_;
 };
+
+/// Makes a call that publishes. What it throws is an error in the log.
+template <class Call>
+void guard(const rclcpp_lifecycle::LifecycleNode& node, Call call) noexcept {
+  try {
+    call();
+  } catch (const std::exception& failure) {
+    RCLCPP_ERROR_THROTTLE(node.get_logger(), *node.get_clock(), 5000, "%s", failure.what());
+  }
+}
 
 /// The topics of a lidar. A node keeps memory of each lifecycle publisher that it ever had, so they are made once.
 struct lidar_topics {

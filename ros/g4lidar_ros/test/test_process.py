@@ -249,6 +249,16 @@ class TestProcess(unittest.TestCase):
         self.not_configured(["-p", f"source:={broken}"], [broken])
         self.not_configured([*sim, "-p", "playback_speed:=.nan"], ["playback_speed"])
         self.not_configured([*sim, "-p", "connect_timeout:=.nan"], ["connect_timeout"])
+        both = ["-p", "sources:=['front=sim:?seed=1', 'rear=sim:?seed=2']"]
+        self.not_configured([*both, "-p", "order:=time"], ["order: time", "sources"])
+        self.not_configured([*both, *sim], ["source", "sources"])
+        self.not_configured([*both, "-p", "mount:='0,0,0'"], ["mount", "sources"])
+        self.not_configured([*both, "-p", "mounts:=['left=0,0,0']"], ["mounts", "left"])
+        self.not_configured([*both, "-p", "mounts:=['front=0,0']"], ["mounts"])
+        self.not_configured(["-p", "sources:=['front=sim:?seed=1']"], ["sources"])
+        self.not_configured(["-p", "sources:=['sim:?seed=1', 'rear=sim:?seed=2']"], ["sources", "NAME="])
+        self.not_configured(["-p", "sources:=['a=sim:?seed=1', 'a=sim:?seed=2']"], ["two lidars", "same name"])
+        self.not_configured(["-p", f"sources:=['front=sim:?seed=1', 'rear={broken}']"], ["sources", "file"])
         output = self.not_configured([*sim, "-p", "frequncy:=7.0", "-p", "model:=g99"], ["g99"])
         self.assertIn("'frequncy' is ignored", output)
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A lidar as a lifecycle node and component of ROS 2.
+// A lidar, or several merged ones, as a lifecycle node and component of ROS 2.
 #pragma once
 
 #include <memory>
@@ -10,8 +10,6 @@
 #include <rclcpp_lifecycle/lifecycle_node.hpp>
 #include <std_msgs/msg/bool.hpp>
 #include <std_srvs/srv/trigger.hpp>
-
-#include <g4lidar/standby.hpp>
 
 namespace g4lidar_ros {
 
@@ -44,22 +42,20 @@ class LidarNode : public rclcpp_lifecycle::LifecycleNode {  // NOLINT(readabilit
  private:
   using trigger = std_srvs::srv::Trigger;
 
-  /// Starts itself, rests or turns the motor, and notices the end of the lidar. Called several times a second.
+  /// Starts itself, and notices the end of the lidar. Called several times a second.
   void update();
   void allow(bool runs, trigger::Response& answer);
   /// `by`: who wants it, for the log.
   void allow(bool runs, const std::string& by);
 
-  std::unique_ptr<node_parameters> parameters_;
-  std::unique_ptr<lidar_topics> topics_;    // since the first configure
+  std::unique_ptr<lidar_topics> topics_;    // since the first configure; outlives the next ones
   std::shared_ptr<lidar_session> session_;  // null unless it is configured
+  std::unique_ptr<node_parameters> parameters_;
   std::unique_ptr<node_diagnostics> diagnostics_;
   std::vector<rclcpp::ServiceBase::SharedPtr> services_;
   rclcpp::SubscriptionBase::SharedPtr running_;
   rclcpp::TimerBase::SharedPtr timer_;
-  g4lidar::standby standby_;
   std::shared_ptr<void> bond_;  // with a lifecycle manager; null: none
-  bool is_allowed_ = true;      // by ~/start, ~/stop, ~/run and the like
   bool starts_itself_ = false;
 };
 
