@@ -320,6 +320,13 @@ std::string title_of_input(const std::string& source) {
 
 namespace {
 
+/// Throws a bad_value for --zero-angle and raw bytes of a model that has no such offset.
+void refuse_without_offset(const g4lidar::model* which) {
+  if (which == nullptr || which->zero_angle_divisor != 0) return;
+  throw bad_value(
+      fmt::format("--zero-angle: {} {} has no such offset", article_of(*which), which->name));
+}
+
 /// Keeps the first bytes that are read.
 class observed_beginning final : public forwarding_transport {
  public:
@@ -352,7 +359,9 @@ opened_source::opened_source(const common_options& options, lidar_options how) {
                   std::string("standard input is a terminal. ") + raw_bytes_advice);
   }
   how = options_for(options, std::move(how));
-  how.wrap = [this, is_raw, wrap = std::move(how.wrap)](std::unique_ptr<connector> from) {
+  how.wrap = [this, is_raw, zero = how.zero_angle,
+              wrap = std::move(how.wrap)](std::unique_ptr<connector> from) {
+    if (is_raw && zero) refuse_without_offset(from->traits().recognised.model);
     played_ = replay::reader_of(*from);
     simulation_ = simulation_of(*from);
     auto wrapped =
@@ -371,7 +380,11 @@ opened_source::opened_source(const common_options& options, lidar_options how) {
     opened = g4lidar::lidar::open(how);
   }
   if (!opened) {
-    if (interrupt() != 0 || opened.error() == problem::cancelled) throw interrupted();
+    const bool is_cancelled = opened.error() == problem::cancelled;
+    // -d or --idle has ended the wait for the first bytes of a pipe.
+    if (is_raw && is_cancelled && interrupt() == 0)
+      throw without_packets({}, 0, {}, title_of_input(options.source));
+    if (interrupt() != 0 || is_cancelled) throw interrupted();
     throw failure_of(options, opened.error());
   }
   lidar_.emplace(std::move(*opened));
