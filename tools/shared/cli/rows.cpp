@@ -78,7 +78,8 @@ option_row row_of(const g4lidar::parameter& of, std::function<void(const std::st
 }
 
 void store(g4lidar::lidar_options& into, const g4lidar::parameter& of, const std::string& word) {
-  refuse(set_option(into, of, word.empty() ? g4lidar::parameter_value(true) : word), of, word);
+  const bool is_flag = of.type == 1;
+  refuse(set_option(into, of, is_flag ? g4lidar::parameter_value(true) : word), of, word);
 }
 
 void store(g4lidar::filter_settings& into, const g4lidar::parameter& of, const std::string& word) {
