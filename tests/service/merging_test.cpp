@@ -19,7 +19,7 @@ const mounting rear{{-0.4, -0.2, -150 * degree}, false};
 
 class ServiceMerging : public Service {
  protected:
-  /// Both in the same room, on a robot that moves as `way` says.
+  /// Both in the same room, on a robot with the path of `way`.
   lidar_service& begin_both(service_options options = {}, const std::string& front_more = "",
                             const std::string& way = "lidar 0 0 0\n") {
     const std::string both = std::string(room) + way;
@@ -129,7 +129,7 @@ TEST_F(ServiceMerging, OnASimulatedRobot_PlacesAreThoseOfItsOdometry) {
   service->stop();
   const auto& last = heard.scans.back();
   ASSERT_TRUE(last.about.place);
-  // The robot is where its odometry says, which begins with 0,0,0 at -1,0,0.
+  // The odometry begins with 0,0,0 at -1,0,0.
   const auto& [pose, stamp_ns] = heard.poses.back();
   const double seconds = static_cast<double>(last.about.first_ns - pose.time_ns) * 1e-9;
   EXPECT_NEAR(last.about.place->pose.x_m, pose.pose.x_m + 0.2 * seconds, 0.002);
