@@ -236,9 +236,9 @@ std::int64_t lidar_service::stamp_ns(std::size_t lidar, std::int64_t time_ns) co
 void lidar_service::change(std::size_t lidar, std::vector<named_value> wanted,
                            std::function<void(const std::string&)> done,
                            std::chrono::milliseconds longest) {
-  const auto settings = std::ranges::stable_partition(wanted, is_filter);
-  const std::vector<named_value> filters(wanted.begin(), settings.begin());
-  std::vector<named_value> device(settings.begin(), settings.end());
+  std::vector<named_value> filters;
+  std::vector<named_value> device;
+  for (named_value& each : wanted) (is_filter(each) ? filters : device).push_back(std::move(each));
   service_core& core = state_->core;
   if (device.empty()) return done(core.set_filters(filters));
   if (const std::string wrong = core.problem_with(filters); !wrong.empty()) return done(wrong);

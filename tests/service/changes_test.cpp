@@ -57,13 +57,14 @@ TEST_F(ServiceChanges, OfASettingAndAFilter) {
   auto device = plug_in();
   begin_at_port();
   ASSERT_TRUE(heard.wait_for_scans(1));
-  const std::size_t before = heard.values.size();
+  ASSERT_TRUE(heard.wait([&] { return heard.values.size() == 1; })) << "when it was opened";
   EXPECT_EQ(service->change_now(0, {{"frequency", 10.0}, {"range_min", 0.5}}, patience), "");
   EXPECT_DOUBLE_EQ(frequency_of(device), 10.0);
   EXPECT_EQ(value("frequency"), parameter_value(10.0));
   EXPECT_EQ(value("range_min"), parameter_value(0.5));
-  EXPECT_TRUE(heard.wait([&] { return heard.values.size() > before; }));
+  EXPECT_TRUE(heard.wait([&] { return heard.values.size() == 2; }));
   EXPECT_TRUE(heard.wait_for_scans(2)) << "it goes on";
+  service->stop();
   EXPECT_GE(std::ranges::min(heard.scans.back().kept, {}, &point::range_mm).range_mm, 500.0F);
 }
 
@@ -117,6 +118,7 @@ TEST_F(ServiceChanges, WhileTheLidarIsSearched) {
   EXPECT_EQ(value("range_min"), parameter_value(0.5));
   auto device = plug_in();
   ASSERT_TRUE(heard.wait_for_scans(3));
+  service->stop();
   EXPECT_GE(std::ranges::min(heard.scans.back().kept, {}, &point::range_mm).range_mm, 500.0F);
 }
 
@@ -130,6 +132,7 @@ TEST_F(ServiceChanges, ThatTakeTooLong_AreAnsweredOnceInTime_AndNotMade) {
   EXPECT_EQ(answers.front(), "the lidar did not answer in time");
   release();
   ASSERT_TRUE(heard.wait_for_scans(2));
+  service->stop();
   EXPECT_EQ(answers.size(), 1U);
   EXPECT_DOUBLE_EQ(frequency_of(device), 7.0);
   EXPECT_EQ(value("range_min"), parameter_value(0.0));
@@ -149,6 +152,7 @@ TEST_F(ServiceChanges, ThatTheLidarDoesNotAnswer_AreAnsweredOnceInTime) {
   ASSERT_TRUE(heard.wait([&] { return !answers.empty(); }));
   EXPECT_EQ(answers.front(), "the lidar did not answer in time; it may be set later");
   ASSERT_TRUE(heard.wait_for_scans(3)) << "it goes on";
+  service->stop();
   EXPECT_EQ(answers.size(), 1U);
 }
 
@@ -192,6 +196,7 @@ TEST_F(ServiceChanges, SettingsAreMadeAgain_WhenItIsOpenedAgain) {
     EXPECT_EQ(value("frequency"), parameter_value(hz));
     EXPECT_EQ(service->change_now(0, {{"frequency", 10.0}}, patience), "");
   }
+  service->stop();
   for (const std::string& each : heard.values) EXPECT_EQ(each, "");
 }
 
@@ -199,6 +204,7 @@ TEST_F(ServiceChanges, SettingsThatCannotBeMade_AreReported_AndItRuns) {
   auto device = plug_in();
   begin_at_port({{"frequency", 99.0}});
   ASSERT_TRUE(heard.wait_for_scans(1));
+  service->stop();
   ASSERT_EQ(heard.values.size(), 1U);
   EXPECT_THAT(heard.values.front(), HasSubstr("99"));
 }
