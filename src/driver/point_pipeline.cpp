@@ -100,9 +100,9 @@ ring_read point_pipeline::read(std::span<point> out) noexcept {
   return ring_.get().reader.read(out);
 }
 
-void point_pipeline::begin(std::uint32_t sample_rate_hz) noexcept {
+void point_pipeline::begin(std::uint32_t sample_rate_hz, bool counts_times) noexcept {
   end();
-  decoder_.begin(sample_rate_hz);
+  decoder_.begin(sample_rate_hz, counts_times);
   stream_counts_.crc = {};
   assembler_.set_sample_rate(sample_rate_hz);
   input_.expect(sample_size(which_->samples.layout));

@@ -131,10 +131,8 @@ class point_pipeline {
   void deliver(bool wanted) noexcept { delivers_ = wanted; }
   [[nodiscard]] bool delivers() const noexcept { return delivers_; }
   /// A new stream of points begins, including those of the last event. The unfinished revolution
-  /// becomes a piece.
-  void begin(std::uint32_t sample_rate_hz) noexcept;
-  /// See timed_decoder::count_times(). Before begin().
-  void count_times(std::uint32_t sample_rate_hz) noexcept { decoder_.count_times(sample_rate_hz); }
+  /// becomes a piece. See timed_decoder::begin().
+  void begin(std::uint32_t sample_rate_hz, bool counts_times = false) noexcept;
   /// The stream of points has ended: the unfinished revolution becomes a piece.
   void end() noexcept;
   /// The following bytes are from another transport; see transport::baud(). Before begin(). With

@@ -55,17 +55,15 @@ class timed_decoder {
   [[nodiscard]] bool lacks_zero() const noexcept {
     return which_->zero_angle_divisor != 0 && !zero_.angle();
   }
-  /// A scan begins, or continues after an interruption. `sample_rate_hz` is nominal.
-  void begin(std::uint32_t sample_rate_hz) noexcept {
+  /// A scan begins, or continues after an interruption. `sample_rate_hz` is nominal, or with `counts_times` that at which
+  /// the times are counted from samples, as those of raw bytes: without arrivals lost samples are not known.
+  void begin(std::uint32_t sample_rate_hz, bool counts_times = false) noexcept {
+    counted_hz_ = counts_times ? sample_rate_hz : 0;
     clock_.reset(expected_rate_of(*which_, sample_rate_hz));
     counted_.reset();
     angles_ = {};
     last_packet_ns_ = 0;
   }
-
-  /// From the next begin() on times are counted from samples at this rate, as those of raw bytes; 0: they are
-  /// estimated. Without arrivals lost samples are not known.
-  void count_times(std::uint32_t sample_rate_hz) noexcept { counted_hz_ = sample_rate_hz; }
 
   /// Writes the points of a packet to the front of `out`. `behind` bytes behind it were read in the
   /// same read, at `read_ns`. `lost` is set if samples were lost without skipped bytes.

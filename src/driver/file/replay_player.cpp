@@ -9,6 +9,18 @@
 namespace g4lidar {
 namespace {
 
+/// For a recording of raw bytes: how the points that follow are made.
+recorded_event event_of(recorded_event::kind what, std::int64_t now_ns, connection& from,
+                        std::uint32_t sample_rate_hz, std::optional<zero_angle> zero, bool counts) {
+  return {.what = what,
+          .baud = from.on().baud(),
+          .sample_rate_hz = sample_rate_hz,
+          .time_ns = now_ns,
+          .name = from.name(),
+          .zero = zero,
+          .counts_times = counts};
+}
+
 /// Whether the event happened when this much of the read had been processed.
 bool is_here(const recorded_event& what, const event_reader& input) noexcept {
   switch (what.what) {
@@ -35,9 +47,9 @@ bool is_here(const recorded_event& what, const event_reader& input) noexcept {
 replay_player::replay_player(parts& of, const lidar_options& options)
     : scan_source(of, options),
       stated_{.identity = identity_reader(*options.model, true)},
-      sample_rate_hz_(first_rate_hz(*options.model)),
-      counted_hz_(options.raw_sample_rate_hz.value_or(sample_rate_hz_)),
-      counts_times_(options.counts_times) {}
+      samples_{first_rate_hz(*options.model),
+               options.raw_sample_rate_hz.value_or(first_rate_hz(*options.model)),
+               options.counts_times} {}
 
 result<void> replay_player::open() {
   if (auto opened = connection_.open(); !opened) return opened;
@@ -47,9 +59,8 @@ result<void> replay_player::open() {
   if (source_ == nullptr) {
     stated_.recorder = hook;
     source_ = file_;  // the seams of raw bytes in a loop
-    counts_times_ = counts_times_ || file_ != nullptr;
-    if (counts_times_) sample_rate_hz_ = counted_hz_;
-    follow_times(counts_times_);
+    samples_.counts_times = samples_.counts_times || file_ != nullptr;
+    if (samples_.counts_times) samples_.rate_hz = samples_.raw_rate_hz;
   }
   if (file_ != nullptr) file_->controls().when_moved([this] { follow_seek(); });
   receiver_.reset(0, 0, now_ns());
@@ -59,7 +70,7 @@ result<void> replay_player::open() {
   information_ = source_->device().information;
   pipeline_.identified(information_);
   if (const auto rate = source_->device().sample_rate) {
-    sample_rate_hz_ = to_hz(*rate);
+    samples_.rate_hz = to_hz(*rate);
   }
   static_cast<void>(parse_bytes());
   return {};
@@ -68,7 +79,11 @@ result<void> replay_player::open() {
 result<void> replay_player::start() {
   if (stage_ != stage::idle) return can_read();
   stage_ = stage::playing;
-  if (counts_times_ || pipeline_.zero().angle()) record(recorded_event::kind::begun);
+  const auto zero = pipeline_.zero().angle();  // the user knows it
+  if (zero || samples_.counts_times) {
+    stated_.record(event_of(recorded_event::kind::begun, now_ns(), connection_, samples_.rate_hz,
+                            zero, samples_.counts_times));
+  }
   spin_up_.forget();
   begin_spin_up();
   return {};
@@ -163,8 +178,9 @@ void replay_player::follow_samples() {
   const model* const found = recognised_.follow(seen, baud, now.model->link == link_kind::two_way);
   if (found == nullptr) return;
   stated_.follow(*found);
-  sample_rate_hz_ = first_rate_hz(*found);
+  if (!samples_.counts_times) samples_.rate_hz = first_rate_hz(*found);
   pipeline_.become(*found, baud);
+  if (samples_.counts_times) pipeline_.begin(samples_.rate_hz, true);
   report(lidar_event::kind::other_number);
 }
 
@@ -200,7 +216,10 @@ bool replay_player::parse_bytes() {
         if (is_other || answers) recognised_.set_device(who.model, 0);
         if (is_other) report(lidar_event::kind::other_number);
       }
-      if (pipeline_.zero().angle() != stated_.recorded_zero) record(recorded_event::kind::state);
+      if (const auto zero = pipeline_.zero().angle(); zero != stated_.recorded_zero) {
+        stated_.record(event_of(recorded_event::kind::state, now_ns(), connection_,
+                                samples_.rate_hz, zero, samples_.counts_times));
+      }
       const bool makes_points = pipeline_.delivers() && std::holds_alternative<packet_view>(*found);
       const bool is_first = makes_points && !std::exchange(stated_.is_zero_judged, true);
       if (is_first && pipeline_.decoder().lacks_zero()) report(lidar_event::kind::no_zero_angle);
@@ -211,22 +230,9 @@ bool replay_player::parse_bytes() {
   return true;
 }
 
-/// For a recording of raw bytes: how the points that follow are made.
-void replay_player::record(recorded_event::kind what) {
-  stated_.recorded_zero = pipeline_.zero().angle();
-  if (stated_.recorder == nullptr) return;
-  stated_.recorder->event({.what = what,
-                           .baud = connection_.on().baud(),
-                           .sample_rate_hz = sample_rate_hz_,
-                           .time_ns = now_ns(),
-                           .name = connection_.name(),
-                           .zero = stated_.recorded_zero,
-                           .counts_times = counts_times_});
-}
-
-void replay_player::follow_times(bool counts) noexcept {
-  counts_times_ = counts;
-  pipeline_.count_times(counts ? sample_rate_hz_ : 0);
+void replay_player::statements::record(recorded_event made) {
+  recorded_zero = made.zero;
+  if (recorder != nullptr) recorder->event(made);
 }
 
 void replay_player::follow_delivery() {
@@ -236,7 +242,7 @@ void replay_player::follow_delivery() {
   pipeline_.deliver(wanted);
   if (!wanted) return;
   begin_spin_up();
-  pipeline_.begin(sample_rate_hz_);
+  pipeline_.begin(samples_.rate_hz, samples_.counts_times);
 }
 
 /// Repeats the recorded action of this place, or all actions before the next read. Where an
@@ -285,14 +291,14 @@ void replay_player::play(const recorded_event& what) {
     case recorded_event::kind::begun:
       follow_samples();  // here the recorded driver did
       delivers_ = what.delivers;
-      sample_rate_hz_ = what.sample_rate_hz;
-      follow_times(what.counts_times);
-      return pipeline_.begin(sample_rate_hz_);
+      samples_.rate_hz = what.sample_rate_hz;
+      samples_.counts_times = what.counts_times;
+      return pipeline_.begin(samples_.rate_hz, samples_.counts_times);
     case recorded_event::kind::held:
       delivers_ = false;
       return;
     case recorded_event::kind::gap:
-      return pipeline_.begin(sample_rate_hz_);
+      return pipeline_.begin(samples_.rate_hz, samples_.counts_times);
     case recorded_event::kind::state:
       break;
     case recorded_event::kind::sent:
@@ -309,10 +315,11 @@ void replay_player::play(const recorded_event& what) {
   pipeline_.follow(what.baud);
   delivers_ = what.delivers;
   const std::uint32_t rate = what.sample_rate_hz;
-  if (rate == 0 || (rate == sample_rate_hz_ && what.counts_times == counts_times_)) return;
-  sample_rate_hz_ = rate;
-  follow_times(what.counts_times);
-  pipeline_.begin(rate);
+  const bool counts = what.counts_times;
+  if (rate == 0 || (rate == samples_.rate_hz && counts == samples_.counts_times)) return;
+  samples_.rate_hz = rate;
+  samples_.counts_times = counts;
+  pipeline_.begin(rate, counts);
 }
 
 /// This depends on the bytes only. What is left to do is due at once, by every clock.

@@ -56,6 +56,13 @@ class replay_player final : public scan_source {
     ended,    ///< Waits until the last scan is taken.
   };
 
+  /// Of the points that follow.
+  struct sampling {
+    std::uint32_t rate_hz;
+    std::uint32_t raw_rate_hz;  ///< Of raw bytes whose times are counted.
+    bool counts_times;
+  };
+
   /// What the bytes state about their lidar, and what is recorded of it.
   struct statements {
     identity_reader identity;
@@ -63,6 +70,7 @@ class replay_player final : public scan_source {
     std::optional<zero_angle> recorded_zero{};  ///< By `recorder`.
     bool is_zero_judged = false;                ///< Whether it is known when points begin.
 
+    void record(recorded_event made);
     void follow(const model& which) noexcept {
       identity = identity_reader(which, true);
       is_zero_judged = false;
@@ -89,8 +97,6 @@ class replay_player final : public scan_source {
   void report_long_pause();
   [[nodiscard]] bool play_events(bool all);
   void play(const recorded_event& what);
-  void record(recorded_event::kind what);
-  void follow_times(bool counts) noexcept;
 
   played_file* file_ = nullptr;              // null: a pipe
   recorded_event_source* source_ = nullptr;  // of a file
@@ -102,9 +108,7 @@ class replay_player final : public scan_source {
   bool is_pause_reported_ = false;  // the event long_pause was reported
   bool is_released_ = false;
   statements stated_;
-  std::uint32_t sample_rate_hz_;
-  std::uint32_t counted_hz_;  // of raw bytes
-  bool counts_times_;         // of points, from samples
+  sampling samples_;
   losses lost_;
 };
 

@@ -52,11 +52,9 @@ class pipe_transport final : public transport {
     stream_head head(steady_now_ns());
     std::array<std::uint8_t, 4096> memory;
     while (!head.is_complete(steady_now_ns())) {
-      if (is_cancelled && is_cancelled()) {
-        if (head.held().empty()) return failure(task::opening, problem::cancelled, name_);
-        head.finish();
-        break;
-      }
+      const bool ends = is_cancelled && is_cancelled();
+      if (ends && head.held().empty()) return failure(task::opening, problem::cancelled, name_);
+      if (ends) break;
       if (!wait(POLLIN, std::min(steady_now_ns() + step_ns, head.due_ns()))) continue;
       const auto got = take(memory);
       if (got) {

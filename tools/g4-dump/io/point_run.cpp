@@ -53,7 +53,8 @@ class point_run {
   }
   [[nodiscard]] bool is_raw() const { return kind_ == source_kind::raw_bytes; }
   [[nodiscard]] bool has_end() const {
-    return kind_ == source_kind::recording || (is_raw() && is_regular_file(common_.source));
+    return kind_ == source_kind::recording ||
+           (is_raw() && size_of_file(path_of_source(common_.source)).has_value());
   }
   [[nodiscard]] static lidar_counts counts_of(opened_source& source) {
     return source.lidar().counts();

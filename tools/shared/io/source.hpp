@@ -61,8 +61,10 @@ void report_candidates(std::span<const g4lidar::model* const> candidates);
 
 /// Bytes of a beginning: enough to see how a terminal has changed them.
 inline constexpr std::size_t beginning_bytes = std::size_t{128} << 10U;
-/// Whether the source is a file on disk, which has an end.
-[[nodiscard]] bool is_regular_file(const std::string& source);
+inline constexpr const char* raw_bytes_advice =
+    "Give a file of raw bytes from the lidar's port, or pipe them in.";
+/// Of a file on disk; nothing of all else. - is standard input.
+[[nodiscard]] std::optional<std::uint64_t> size_of_file(const std::string& path);
 /// Its name in messages.
 [[nodiscard]] std::string title_of_input(const std::string& source);
 
