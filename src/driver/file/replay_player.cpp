@@ -28,18 +28,13 @@ bool is_here(const recorded_event& what, const event_reader& input) noexcept {
     case recorded_event::kind::held:
     case recorded_event::kind::cut:
       return input.unparsed().size() <= what.unparsed && input.events_of_reading() >= what.events;
-    case recorded_event::kind::sent:
-    case recorded_event::kind::state:
-    case recorded_event::kind::odometry:
-    case recorded_event::kind::dtr_low:
-    case recorded_event::kind::dtr_high:
-      return true;  // the place does not matter
     case recorded_event::kind::opened:
     case recorded_event::kind::closed:
     case recorded_event::kind::gap:
-      break;
+      return false;  // after the complete read
+    default:
+      return true;  // the place does not matter
   }
-  return false;  // after the complete read
 }
 
 }  // namespace
@@ -69,9 +64,7 @@ result<void> replay_player::open() {
   if (source_ == nullptr) return {};
   information_ = source_->device().information;
   pipeline_.identified(information_);
-  if (const auto rate = source_->device().sample_rate) {
-    samples_.rate_hz = to_hz(*rate);
-  }
+  if (const auto rate = source_->device().sample_rate) samples_.rate_hz = to_hz(*rate);
   static_cast<void>(parse_bytes());
   return {};
 }
@@ -305,10 +298,7 @@ void replay_player::play(const recorded_event& what) {
       // It is answered in the reads behind it; what is left of the last one answers the command before.
       if (what.data.size() == 2) next_.sent = {what.data[0], what.data[1]};
       return;
-    case recorded_event::kind::cut:
-    case recorded_event::kind::odometry:
-    case recorded_event::kind::dtr_low:
-    case recorded_event::kind::dtr_high:
+    default:
       return;
   }
   // The state, which is repeated regularly in a recording: usually nothing changes.
