@@ -247,9 +247,9 @@ void lidar_service::change(std::size_t lidar, std::vector<named_value> wanted,
   if (!state_->changes.add(made)) return made->finish("the lidar is not connected");
   lidar_channel& channel = state_->channels[lidar];
   channel.reader().ask(
-      [this, &channel, made, filters, device = std::move(device)](g4lidar::lidar* found) {
+      [this, &channel, made, filters, settings = std::move(device)](g4lidar::lidar* found) {
         if (!made->claim()) return;
-        const std::string wrong = state_->set(channel, found, device, filters);
+        const std::string wrong = state_->set(channel, found, settings, filters);
         made->finish(wrong);
         if (!wrong.empty()) return;
         state_->core.sinks().call([&](service_sink& to) { to.on_values(made->lidar(), {}); });

@@ -58,7 +58,8 @@ TEST_F(ServiceMerging, PointsAreInTheFrameOfTheRobot) {
     double before = 0;
     for (std::size_t i = from; i < from + last.kept_of_each[lidar]; ++i) {
       const xy_point place = to_xy(last.kept[i], frame::robot);
-      const double bearing = std::atan2(double{place.y_m} - at.y_m, double{place.x_m} - at.x_m);
+      const double bearing = std::atan2(static_cast<double>(place.y_m) - at.y_m,
+                                        static_cast<double>(place.x_m) - at.x_m);
       if (i > from && std::remainder(bearing - before, 2 * std::numbers::pi) > 0.0005) ++back;
       before = bearing;
     }

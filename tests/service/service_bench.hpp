@@ -221,7 +221,8 @@ inline std::vector<double> distances_to_walls(std::span<const point> points, con
   for (const point& each : points) {
     if (each.is_no_return()) continue;
     const xy_point own = to_xy(each, frame::robot);
-    const pose_2d there = at * pose_2d{own.x_m, own.y_m, 0};
+    const pose_2d there =
+        at * pose_2d{static_cast<double>(own.x_m), static_cast<double>(own.y_m), 0};
     all.push_back(std::min(std::abs(std::abs(there.x_m) - 4), std::abs(std::abs(there.y_m) - 3)));
   }
   std::ranges::sort(all);
