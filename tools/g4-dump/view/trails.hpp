@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "cli/exit_code.hpp"
 #include "g4lidar/lidar_service.hpp"
 #include "g4lidar/scan.hpp"
 #include "radar.hpp"
