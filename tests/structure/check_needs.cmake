@@ -18,6 +18,7 @@ endfunction()
 
 list(FILTER OBJECTS EXCLUDE REGEX "\\.gch$") # precompiled headers
 symbols(needed --undefined-only ${OBJECTS})
+list(FILTER needed EXCLUDE REGEX "^g4_tool::") # of the programs, with a type of the library
 symbols(own --defined-only ${OBJECTS})
 symbols(shown --dynamic --defined-only ${LIBRARIES})
 list(REMOVE_DUPLICATES needed)
