@@ -171,8 +171,8 @@ struct service_output {
 ///     std::this_thread::sleep_for(60s);
 class G4LIDAR_API lidar_service {
  public:
-  /// Opens nothing but recordings, for their odometry. One lidar, or 2 to 32 that are merged: `merges`. Fails with
-  /// bad_option, which names what is wrong: no lidar, too many, two of one name, a setting that does not exist.
+  /// Opens nothing but recordings, for their odometry. One lidar, or 2 to 32 that are merged. Fails with bad_option,
+  /// which names what is wrong: no lidar, too many, two of one name, a setting that does not exist, no sink.
   [[nodiscard]] static result<std::unique_ptr<lidar_service>> make(
       std::vector<service_lidar> lidars, service_options options,
       std::vector<service_output> outputs);

@@ -152,6 +152,8 @@ result<std::unique_ptr<lidar_service>> lidar_service::make(std::vector<service_l
         return failure(task::opening, problem::bad_option, "there is no setting " + name);
     }
   }
+  if (std::ranges::find(outputs, nullptr, &service_output::sink) != outputs.end())
+    return failure(task::opening, problem::bad_option, "an output has no sink");
   return std::unique_ptr<lidar_service>(
       new lidar_service(std::make_unique<state>(std::move(lidars), std::move(options), outputs)));
 }
@@ -251,7 +253,7 @@ void lidar_service::change(std::size_t lidar, std::vector<named_value> wanted,
         if (!made->claim()) return;
         const std::string wrong = state_->set(channel, found, settings, filters);
         made->finish(wrong);
-        if (!wrong.empty()) return;
+        // Also if it is refused: what was made before may not be undone.
         state_->core.sinks().call([&](service_sink& to) { to.on_values(made->lidar(), {}); });
       });
   state_->wake();

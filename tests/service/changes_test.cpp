@@ -84,7 +84,7 @@ TEST_F(ServiceChanges, OfARefusedSetting_LeaveFilters) {
   const std::vector<named_value> wanted{
       {"range_min", 0.5}, {"direction", std::string("ccw")}, {"frequency", 99.0}};
   EXPECT_THAT(service->change_now(0, wanted, patience), HasSubstr("99"));
-  EXPECT_EQ(service->change_now(0, {{"speed", 10.0}, {"range_min", 0.5}}, patience),
+  EXPECT_EQ(service->change_now(0, {{"loudness", 10.0}, {"range_min", 0.5}}, patience),
             "there is no such parameter");
   EXPECT_EQ(value("range_min"), parameter_value(0.0));
   EXPECT_DOUBLE_EQ(frequency_of(device), 7.0);

@@ -178,6 +178,7 @@ TEST(ServiceLidars, AreOneTo32_OfDifferentNames) {
   EXPECT_THAT(problem_of(lidars), HasSubstr("32"));
   EXPECT_THAT(problem_of({lidars[0], lidars[1], lidars[0]}), HasSubstr("the same name"));
   lidars.resize(1);
+  EXPECT_FALSE(lidar_service::make(lidars, {}, {{nullptr}}));
   for (const char* const wrong : {"speed", "range_min", "model"}) {
     lidars[0].settings = {{wrong, 1.0}};
     EXPECT_THAT(problem_of(lidars), HasSubstr(wrong));
