@@ -23,6 +23,13 @@ struct filter_settings {
   std::vector<sector> ignored{};  ///< In the frame of `filter`.
   mark_limits marks{};
   grid_options grid{};  ///< What ranges without return become; its frame is not used.
+
+  /// The filter with its ignored sectors, a view of this. *Pure.*
+  [[nodiscard]] point_filter complete_filter() const noexcept {
+    point_filter made = filter;
+    made.ignored_sectors = ignored;
+    return made;
+  }
 };
 
 /// Sets a filter by its name:

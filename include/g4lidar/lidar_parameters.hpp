@@ -11,21 +11,17 @@
 #include <utility>
 
 #include "g4lidar/detail/api.hpp"
-#include "g4lidar/export/mask.hpp"
 #include "g4lidar/filter_text.hpp"
 #include "g4lidar/lidar.hpp"
 #include "g4lidar/option_table.hpp"
-#include "g4lidar/scan_shaper.hpp"
 
 namespace g4lidar {
 
 /// The values of one lidar. Functions without another word: only in the thread that reads it.
 class G4LIDAR_API lidar_parameters {
  public:
-  /// `how`: what no parameter changes; its filter and its marks are those of `start`, and its masks those of `mask`.
-  /// `shaper` shapes by them, and outlives this.
-  lidar_parameters(const shaping_options& how, filter_settings start, g4lidar::mask mask,
-                   scan_shaper& shaper);
+  /// With the filters `start`.
+  explicit lidar_parameters(filter_settings start = {});
 
   /// The filters now.
   [[nodiscard]] const filter_settings& filters() const noexcept { return now_; }
@@ -46,12 +42,8 @@ class G4LIDAR_API lidar_parameters {
  private:
   using device_change = std::pair<const parameter*, answer>;
   [[nodiscard]] std::string set_device(lidar* device, std::span<const device_change> changes);
-  void shape();
   [[nodiscard]] const model* known_model() const;
 
-  shaping_options how_;
-  g4lidar::mask mask_;
-  scan_shaper& shaper_;
   mutable std::mutex mutex_;  // protects the next two; the thread reads the first one without
   filter_settings now_;
   std::map<std::string, parameter_value, std::less<>> values_;

@@ -8,22 +8,11 @@
 
 namespace g4lidar {
 
-lidar_parameters::lidar_parameters(const shaping_options& how, filter_settings start,
-                                   g4lidar::mask mask, scan_shaper& shaper)
-    : how_(how), mask_(std::move(mask)), shaper_(shaper), now_(std::move(start)) {
-  shape();
+lidar_parameters::lidar_parameters(filter_settings start) : now_(std::move(start)) {
   const point_filter& filter = now_.filter;
+  now_.grid.longest_mm = filter.greatest_range_mm;
   fix("range_min", static_cast<double>(filter.least_range_mm) / 1e3);
   fix("range_max", std::min(static_cast<double>(filter.greatest_range_mm) / 1e3, 100.0));
-}
-
-void lidar_parameters::shape() {
-  now_.grid.longest_mm = now_.filter.greatest_range_mm;
-  how_.filter = now_.filter;
-  how_.filter.ignored_sectors = now_.ignored;
-  how_.filter.masks = mask_.polygons();
-  how_.marks = now_.marks;
-  shaper_.set_options(how_);
 }
 
 filter_settings lidar_parameters::current_filters() const {
@@ -111,7 +100,7 @@ std::string lidar_parameters::change(lidar* device, std::span<const named_value>
   {
     const std::lock_guard lock(mutex_);
     now_ = std::move(next);
-    shape();
+    now_.grid.longest_mm = now_.filter.greatest_range_mm;
   }
   for (const auto& [name, value] : values) fix(name, value);
   return {};

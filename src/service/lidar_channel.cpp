@@ -22,7 +22,6 @@ lidar_channel::lidar_channel(service_lidar what, std::size_t index, service_core
       index_(index),
       core_(core),
       is_file_(is_file_name(about_.options.device)),
-      settings_({}, {}, {}, unused_),
       wanted_(about_.settings.begin(), about_.settings.end()),
       reader_(observed_options(), {.wants_points = core.options().gives_points}, this) {
   // Merged lidars are on one robot: that of the first one.

@@ -60,7 +60,6 @@ class lidar_channel final : private reader_listener {
   bool has_odometry_ = false;
   running_diagnosis diagnosis_;
   const sim::simulated_source* simulation_ = nullptr;
-  scan_shaper unused_;  // of the next one
   lidar_parameters settings_;
   std::map<std::string, parameter_value> wanted_;  // the settings, in the thread
   std::atomic<const g4lidar::model*> model_ = nullptr;

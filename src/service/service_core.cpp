@@ -19,7 +19,7 @@ deskewing merged_deskewing(const service_options& options, const service_lidar& 
 
 service_core::service_core(service_options options, const std::vector<service_lidar>& lidars,
                            const std::vector<service_output>& outputs)
-    : options_(std::move(options)), sinks_(outputs), filters_({}, options_.filters, {}, unused_) {
+    : options_(std::move(options)), sinks_(outputs), filters_(options_.filters) {
   deskewing deskew = options_.deskew;
   if (lidars.size() > 1) {
     deskew = merged_deskewing(options_, lidars.front());
@@ -45,8 +45,7 @@ void service_core::begin(bool has_odometry) {
 
 std::string service_core::problem_with(std::span<const named_value> wanted) const {
   if (wanted.empty()) return {};
-  scan_shaper shaper;
-  lidar_parameters trial({}, filters_.current_filters(), {}, shaper);
+  lidar_parameters trial(filters_.current_filters());
   return trial.change(nullptr, wanted);
 }
 
@@ -75,15 +74,13 @@ void service_core::update(shaping& of) {
   const unsigned now = version_;
   if (std::exchange(of.version, now) == now) return;
   of.filters = filters_.current_filters();
-  shaping_options made{.filter = of.filters.filter,
+  shaping_options made{.filter = of.filters.complete_filter(),
                        .marks = of.filters.marks,
                        .deskew = of.deskew,
                        .mount = of.place,
                        .restamps = options_.restamps,
                        .for_merging = merger_.has_value()};
-  made.filter.ignored_sectors = of.filters.ignored;
   made.filter.masks = options_.mask.polygons();
-  of.filters.grid.longest_mm = made.filter.greatest_range_mm;
   of.shaper.set_options(made);
 }
 

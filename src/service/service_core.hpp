@@ -78,7 +78,6 @@ class service_core {
 
   const service_options options_;
   sink_group sinks_;
-  scan_shaper unused_;          // of the next one
   mutable std::mutex changes_;  // of the next one
   lidar_parameters filters_;
   std::atomic<unsigned> version_ = 1;

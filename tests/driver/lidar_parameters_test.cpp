@@ -76,7 +76,7 @@ class filtered {
   filtered() {
     filter_settings start;
     start.filter.in = frame::robot;
-    parameters_ = std::make_unique<lidar_parameters>(shaping_options{}, start, mask{}, shaper_);
+    parameters_ = std::make_unique<lidar_parameters>(start);
     for (const auto& [name, word] :
          {std::pair("edges", "off"), std::pair("fov", "-180:180"), std::pair("ignore", ""),
           std::pair("near", "off"), std::pair("near_as", "nan"), std::pair("no_return", "inf"),
@@ -91,7 +91,11 @@ class filtered {
   }
   /// Why not, or empty.
   std::string set(const std::string& name, parameter_value to) {
-    return parameters_->change(nullptr, std::vector<named_value>{{name, std::move(to)}});
+    std::string wrong =
+        parameters_->change(nullptr, std::vector<named_value>{{name, std::move(to)}});
+    const filter_settings& now = parameters_->filters();
+    shaper_.set_options({.filter = now.complete_filter(), .marks = now.marks});
+    return wrong;
   }
   [[nodiscard]] std::string value(const char* name) const {
     return std::get<std::string>(parameters_->value(*find_parameter(name)));

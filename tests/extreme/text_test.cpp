@@ -162,8 +162,7 @@ TEST(ExtremeText, Parameters) {
   }
   many_times(
       [](test::dice& random) {
-        scan_shaper shaper;
-        lidar_parameters parameters({}, {}, {}, shaper);
+        lidar_parameters parameters;
         lidar_options options;
         for (const parameter& each : all_parameters()) {
           for (const parameter_value& number :

@@ -296,8 +296,7 @@ std::string node_parameters::refuse(const changes& wanted) {
     values.insert(values.end(), settings.begin(), settings.end());
     return session_->change(values);
   }
-  g4lidar::scan_shaper shaper;
-  g4lidar::lidar_parameters trial({}, {}, {}, shaper);
+  g4lidar::lidar_parameters trial;
   return trial.change(nullptr, values);
 }
 

@@ -124,9 +124,7 @@ std::vector<stage_report> running_diagnosis::stages(const point_filter& directio
   return state_->stages(directions);
 }
 std::vector<stage_report> running_diagnosis::stages(const filter_settings& wanted) const {
-  point_filter directions = wanted.filter;
-  directions.ignored_sectors = wanted.ignored;
-  return stages(directions);
+  return stages(wanted.complete_filter());
 }
 
 }  // namespace g4lidar

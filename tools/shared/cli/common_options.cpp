@@ -120,9 +120,8 @@ option_rows direction_rows(common_options& options) {
 }
 
 point_filter directions_of(const common_options& options) {
-  point_filter made = options.filter;
+  point_filter made = options.complete_filter();
   made.in = options.frame;
-  made.ignored_sectors = options.ignored;
   return made;
 }
 
