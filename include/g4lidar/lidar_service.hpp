@@ -45,6 +45,8 @@ struct service_lidar {
 
 /// What a service does. By default it filters nothing and deskews nothing.
 struct service_options {
+  bool merges =
+      false;  ///< Whether one lidar, too, is given as merged ones: in the frame of the robot.
   filter_settings filters{};  ///< At the beginning; lidar_service::change() changes them.
   g4lidar::mask mask{};       ///< Returns inside are left out.
   deskewing deskew = deskewing::none;

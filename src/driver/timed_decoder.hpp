@@ -6,8 +6,10 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <utility>
 
 #include "core/bulk_kernels.hpp"
+#include "g4lidar/core/clock/sample_counter.hpp"
 #include "g4lidar/core/decode.hpp"
 #include "g4lidar/core/model.hpp"
 #include "g4lidar/core/sample_clock.hpp"
@@ -56,11 +58,13 @@ class timed_decoder {
     return which_->zero_angle_divisor != 0 && !zero_.angle();
   }
   /// A scan begins, or continues after an interruption. `sample_rate_hz` is nominal, or with `counts_times` that at which
-  /// the times are counted from samples, as those of raw bytes: without arrivals lost samples are not known.
+  /// the times are counted from the samples that came, as those of raw bytes.
   void begin(std::uint32_t sample_rate_hz, bool counts_times = false) noexcept {
     counted_hz_ = counts_times ? sample_rate_hz : 0;
     clock_.reset(expected_rate_of(*which_, sample_rate_hz));
     counted_.reset();
+    gaps_.reset();
+    has_skipped_ = false;
     angles_ = {};
     last_packet_ns_ = 0;
   }
@@ -72,7 +76,8 @@ class timed_decoder {
     const std::int64_t arrival_ns =
         detail::saturating_sub(read_ns, gathered_for_ns(packet, behind));
     decoded found = without_points(packet, revolutions_.count(packet));
-    const packet_times times = is_counted() ? packet_times{} : clock_.stamp(found, arrival_ns);
+    const packet_times times =
+        is_counted() ? packet_times{.lost = lost_before(found)} : clock_.stamp(found, arrival_ns);
     const bool fits = angles_.fits(packet);
     if (times.lost > 0) angles_.lost();  // or the angles are wrong: the next packet decides
     if (!found.suspect) {
@@ -94,7 +99,9 @@ class timed_decoder {
   /// Bytes were skipped within the scan.
   void gone(skipped what) noexcept {
     angles_.lost();
-    if (what.reason != skip_reason::noise) clock_.lost(what.count);
+    if (what.reason == skip_reason::noise) return;
+    has_skipped_ = true;
+    clock_.lost(what.count);
   }
   /// So many bytes of an unfinished packet have arrived. See sensor_clock::seen().
   void seen(std::size_t held, std::int64_t arrival_ns) noexcept { clock_.seen(held, arrival_ns); }
@@ -110,6 +117,11 @@ class timed_decoder {
 
  private:
   [[nodiscard]] bool is_counted() const noexcept { return counted_hz_ > 0; }
+  /// By the angles: without arrivals nothing else shows it. Devices lose whole packets: less than half of one is none.
+  [[nodiscard]] std::int64_t lost_before(const decoded& found) noexcept {
+    const sample_gap gap = gaps_.next(found, std::exchange(has_skipped_, false), 0.0);
+    return 2 * gap.lost < static_cast<std::int64_t>(found.sample_count) ? 0 : gap.lost;
+  }
   /// The samples of a suspect packet were measured, too. A packet arrives one period after its last sample.
   void count(const decoded& found, std::int64_t arrival_ns,
              std::span<point, max_samples> out) noexcept {
@@ -154,6 +166,8 @@ class timed_decoder {
   std::uint32_t counted_hz_ = 0;         // 0: clock_ has the times
   std::optional<sample_clock> counted_;  // from the first point on
   std::int64_t counted_from_ns_ = 0;
+  sample_counter gaps_;       // of counted times
+  bool has_skipped_ = false;  // bytes since the last packet
   revolution_counter revolutions_;
   angle_check angles_;
   std::int64_t last_packet_ns_ = 0;  // since begin()

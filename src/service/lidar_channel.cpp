@@ -73,19 +73,16 @@ void lidar_channel::on_open(lidar& device) {
   show_model(*device.recognition().model);
   if (device.information().is_known())
     settings_.fix("serial_number", std::string(device.information().serial_number()));
-  std::string refused;
-  if (!is_file_) {
-    // It may be another one, or have lost them.
-    for (const parameter& each : all_parameters()) {
-      if (each.kind == parameter_kind::device) settings_.fix(each.name, {});
-    }
-    if (core_.options().reads_settings) settings_.read_device(device);
-    std::vector<named_value> missing;
-    for (const auto& [name, value] : wanted_) {
-      if (settings_.value(*find_parameter(name)) != value) missing.emplace_back(name, value);
-    }
-    refused = set(&device, missing);
+  // It may be another one, or have lost them.
+  for (const parameter& each : all_parameters()) {
+    if (each.kind == parameter_kind::device) settings_.fix(each.name, {});
   }
+  if (core_.options().reads_settings && !is_file_) settings_.read_device(device);
+  std::vector<named_value> missing;
+  for (const auto& [name, value] : wanted_) {
+    if (settings_.value(*find_parameter(name)) != value) missing.emplace_back(name, value);
+  }
+  const std::string refused = set(&device, missing);
   core_.sinks().call([&](service_sink& to) {
     to.on_open(index_, device);
     to.on_values(index_, refused);

@@ -21,7 +21,7 @@ service_core::service_core(service_options options, const std::vector<service_li
                            const std::vector<service_output>& outputs)
     : options_(std::move(options)), sinks_(outputs), filters_(options_.filters) {
   deskewing deskew = options_.deskew;
-  if (lidars.size() > 1) {
+  if (lidars.size() > 1 || options_.merges) {
     deskew = merged_deskewing(options_, lidars.front());
     std::vector<scan_merger::lidar> parts;
     for (const service_lidar& each : lidars)

@@ -71,8 +71,8 @@ TEST_F(DeskewedRobot, MergedLidarsWhoseScansDoNotShowTheMotion_AreNotDeskewedAnd
   cli::program tool({"front=sim:?world=" + path("post.txt"), "--merge", "--mount", "front=0,0,0",
                      "--deskew", "scans"});
   EXPECT_TRUE(comes_true([&] { return clouds.take() > 0; }));
-  EXPECT_TRUE(comes_true([&] { return diagnostics["g4lidar: front deskewing level"] == "1"; }));
-  EXPECT_EQ(diagnostics["g4lidar: front deskewing warning"],
+  EXPECT_TRUE(comes_true([&] { return diagnostics["g4lidar: deskewing level"] == "1"; }));
+  EXPECT_EQ(diagnostics["g4lidar: deskewing warning"],
             "points are not deskewed: the scans do not show the motion");
   EXPECT_TRUE(
       comes_true([&] { return std::atoi(diagnostics["points_not_deskewed"].c_str()) > 3000; }));

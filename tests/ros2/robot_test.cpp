@@ -225,7 +225,7 @@ TEST_F(Robot, MergedLidarsSeeTheWallsWhereTheyAre) {
   }
   EXPECT_GT(seen, 700);
   // A scan may be without a lidar that is still being opened; then none is.
-  EXPECT_TRUE(comes_true([&] { return diagnostics["g4lidar: front merging level"] == "0"; }));
+  EXPECT_TRUE(comes_true([&] { return diagnostics["g4lidar: merging level"] == "0"; }));
   EXPECT_NE(diagnostics["scans_without_front"], "");
   EXPECT_NE(diagnostics["scans_without_rear"], "");
   tool.send(SIGINT);
@@ -338,7 +338,7 @@ TEST_F(Robot, MergedLidarsFollowTheSimulatedRobot) {
     good += nearest_wall(turned).second < 0.06 ? 1U : 0U;
   }
   EXPECT_GT(good, points.size() * 95 / 100) << points.size();
-  EXPECT_TRUE(comes_true([&] { return diagnostics["g4lidar: front deskewing level"] == "0"; }));
+  EXPECT_TRUE(comes_true([&] { return diagnostics["g4lidar: deskewing level"] == "0"; }));
   tool.send(SIGINT);
 }
 

@@ -67,6 +67,17 @@ TEST_F(ServiceMerging, PointsAreInTheFrameOfTheRobot) {
   }
 }
 
+TEST_F(ServiceMerging, OfOneLidar_PointsAreInTheFrameOfTheRobot) {
+  const std::string at =
+      text_file("one.txt", std::string(room) + "lidar 0 0 0\nmount 0.3,0.1,20\n");
+  begin({lidar_at("sim:?world=" + at, "front", front)}, {.merges = true});
+  ASSERT_TRUE(heard.wait_for_scans(2));
+  service->stop();
+  const seen_scan& last = heard.scans.back();
+  EXPECT_EQ(last.kept_of_each, std::vector<std::size_t>{last.kept.size()});
+  EXPECT_LT(most_of(distances_to_walls(last.kept, {})), 0.05);
+}
+
 TEST_F(ServiceMerging, WithoutOneOfThem_TheOtherIsGiven_AndAWarning) {
   begin_both({}, "&fault=unplug@5s");
   ASSERT_TRUE(wait_for_scan(true));

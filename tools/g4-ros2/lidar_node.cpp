@@ -47,6 +47,7 @@ lidar_node::lidar_node(dds::bus& on, const ros2_options& options,
     throw bad_value("--merge cannot be used with --order time: a merged scan has no order of time");
   }
   service_options how = service_options_of(options.common);
+  how.merges = options.merges;
   how.restamps = true;  // nobody is to deskew the points of a message again
   how.gives_points = is_played_ || kind_of_source(lidars.front().source) == source_kind::simulated;
   how.is_standby = options.is_standby;

@@ -75,6 +75,7 @@ scan_publisher::scan_publisher(const serve_options& options,
     served.push_back(made.for_service());
   }
   service_options how = service_options_of(options.common);
+  how.merges = options.merges;
   how.follows_motion = true;
   how.restamps = true;  // nobody is to deskew the points of a message again
   how.reads_settings = true;

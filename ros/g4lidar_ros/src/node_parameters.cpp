@@ -231,6 +231,8 @@ session_options node_parameters::for_session() const {
   for (g4lidar::service_lidar& each : made.lidars) {
     if (const auto wrong = g4lidar::problem_with(each.options))
       throw std::invalid_argument(wrong->message());
+    // Files of parameters have settings for every source.
+    if (is_file(each.options.device)) each.settings.clear();
     each.options = g4lidar::usable_options(each.options);
   }
   return made;

@@ -74,6 +74,7 @@ class viewer {
           (name_.empty() ? "" : ", ") + (each.name.empty() ? "" : each.name + '=') + each.source;
     }
     service_options how = service_options_of(*job.common);
+    how.merges = job.merges;
     how.follows_motion = true;
     service_ = make_service(std::move(read), std::move(how), {{&newest_, delivery::in_reader}});
     const blocked_signals handled_by_this_thread;
