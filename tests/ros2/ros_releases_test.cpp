@@ -138,7 +138,7 @@ TEST_F(Releases, ADistributionThatIsNamedIsAnnouncedAtOnce) {
 
 TEST_F(Releases, EachPublicationHasTheHashOfItsType) {
   published all(domain_);
-  cli::write_file(path("path.txt"), "0 0 0 0\n10 1 0 0\n");
+  cli::write_file(path("path.txt"), "drive forward 1 0.1\n");
   cli::program tool({"sim:?path=" + path("path.txt"), "--mount", "0,0,0", "--announce", "iron"});
   ASSERT_TRUE(comes_true([&] {
     const auto& now = all.data();
