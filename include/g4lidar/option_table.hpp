@@ -42,15 +42,15 @@ inline constexpr std::uint8_t port =
     16;  ///< Beside `live`: a port of this computer, which may be searched.
 inline constexpr std::uint8_t counted_pipe =
     32;  ///< Beside `pipe`: with lidar_options::counts_times.
-inline constexpr std::uint8_t file = recording | raw_file;
-inline constexpr std::uint8_t any = live | file | pipe | port;
+inline constexpr std::uint8_t file = recording | raw_file;      ///< Both.
+inline constexpr std::uint8_t any = live | file | pipe | port;  ///< All.
 }  // namespace option_user
 
 /// Who has an option; bits of a set: some commands, the node of ROS 2 as a parameter, open() of Python.
 namespace option_door {
-inline constexpr std::uint8_t tool = 1;
-inline constexpr std::uint8_t node = 2;
-inline constexpr std::uint8_t python = 4;
+inline constexpr std::uint8_t tool = 1;    ///< A command.
+inline constexpr std::uint8_t node = 2;    ///< The node of ROS 2.
+inline constexpr std::uint8_t python = 4;  ///< open() of Python.
 }  // namespace option_door
 
 struct option_access;

@@ -41,8 +41,8 @@ lidar_node::lidar_node(dds::bus& on, const ros2_options& options,
       lidars_(lidars),
       name_space_(name_space_of(options, lidars)),
       is_played_(kind_of_source(lidars.front().source) == source_kind::recording),
-      messages_(on, options, name_space_, frame_id_of(options, lidars)),
-      diagnostics_(on, options, name_space_, options.merges ? "" : lidars.front().name) {
+      diagnostics_(on, options, name_space_, options.merges ? "" : lidars.front().name),
+      messages_(on, options, name_space_, frame_id_of(options, lidars)) {
   if (options.merges && options.order == scan_order::time) {
     throw bad_value("--merge cannot be used with --order time: a merged scan has no order of time");
   }

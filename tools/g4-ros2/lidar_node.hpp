@@ -57,8 +57,8 @@ class lidar_node final : private service_sink {
   const std::vector<named_source> lidars_;
   const std::string name_space_;
   const bool is_played_;  // a recording
-  scan_messages messages_;
   lidar_diagnostics diagnostics_;
+  scan_messages messages_;
   std::unique_ptr<dds::publisher> place_;
   std::unique_ptr<odometry_subscription> driven_;
   std::optional<robot_messages> robot_;
