@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "g4lidar/merge.hpp"
+#include "program.hpp"
 #include "service/scan_merger.hpp"
 #include "support/cloud_rows.hpp"
 #include "support/shaped_drive.hpp"
@@ -24,8 +25,10 @@ using g4lidar::scan_merger;
 using g4lidar::scan_shaper;
 using g4lidar::stamped_pose;
 
-TEST(MergedDrive, IsThatOfMergeScans_BitForBit) {
-  const g4lidar::test::shaped_drive drive(G4_DUMP, testing::TempDir());
+class MergedDrive : public cli::scratch {};
+
+TEST_F(MergedDrive, IsThatOfMergeScans_BitForBit) {
+  const g4lidar::test::shaped_drive drive(G4_DUMP, path("."));
   const mounting front{{0.25, 0.125, 0.5}, false};
   const mounting rear{{-0.5, 0.0, 3.0}, true};
   scan_merger merger(deskewing::by_scans, {{"front", front}, {"rear", rear}});
