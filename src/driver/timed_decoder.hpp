@@ -73,28 +73,9 @@ class timed_decoder {
   /// same read, at `read_ns`. `lost` is set if samples were lost without skipped bytes.
   [[nodiscard]] decoded decode(packet_view packet, std::int64_t read_ns, std::size_t behind,
                                std::span<point, max_samples> out, bool& lost) noexcept {
-    const std::int64_t arrival_ns =
-        detail::saturating_sub(read_ns, gathered_for_ns(packet, behind));
-    decoded found = without_points(packet, revolutions_.count(packet));
-    const packet_times times =
-        is_counted() ? packet_times{.lost = lost_before(found)} : clock_.stamp(found, arrival_ns);
-    const bool fits = angles_.fits(packet);
-    if (times.lost > 0) angles_.lost();  // or the angles are wrong: the next packet decides
-    if (!found.suspect) {
-      to_points_(packet, found.revolution, shortest_mm_, times, out);
-      found.points = out.first(packet.sample_count());
-      zero_.add_to(out.first(packet.sample_count()));
-      if (!fits) mark_unlikely(out.first(packet.sample_count()));
-    }
-    if (is_counted()) count(found, arrival_ns, out);
-    samples_lost_ += static_cast<std::uint64_t>(times.lost);
-    lost = times.lost > 0;
-    if (last_packet_ns_ != 0) {
-      largest_gap_ns_ =
-          std::max(largest_gap_ns_, detail::saturating_sub(arrival_ns, last_packet_ns_));
-    }
-    last_packet_ns_ = arrival_ns;
-    return found;
+    if (counted_hz_ > 0) [[unlikely]]
+      return decode_counted(packet, read_ns, behind, out, lost);
+    return decode_as<false>(packet, read_ns, behind, out, lost);
   }
   /// Bytes were skipped within the scan.
   void gone(skipped what) noexcept {
@@ -116,7 +97,41 @@ class timed_decoder {
   [[nodiscard]] std::int64_t largest_gap_ns() const noexcept { return largest_gap_ns_; }
 
  private:
-  [[nodiscard]] bool is_counted() const noexcept { return counted_hz_ > 0; }
+  /// The path of live lidars stays free of it.
+  [[gnu::noinline]] decoded decode_counted(packet_view packet, std::int64_t read_ns,
+                                           std::size_t behind, std::span<point, max_samples> out,
+                                           bool& lost) noexcept {
+    return decode_as<true>(packet, read_ns, behind, out, lost);
+  }
+  template <bool IsCounted>
+  [[nodiscard]] decoded decode_as(packet_view packet, std::int64_t read_ns, std::size_t behind,
+                                  std::span<point, max_samples> out, bool& lost) noexcept {
+    const std::int64_t arrival_ns =
+        detail::saturating_sub(read_ns, gathered_for_ns(packet, behind));
+    decoded found = without_points(packet, revolutions_.count(packet));
+    packet_times times;
+    if constexpr (IsCounted)
+      times.lost = lost_before(found);
+    else
+      times = clock_.stamp(found, arrival_ns);
+    const bool fits = angles_.fits(packet);
+    if (times.lost > 0) angles_.lost();  // or the angles are wrong: the next packet decides
+    if (!found.suspect) {
+      to_points_(packet, found.revolution, shortest_mm_, times, out);
+      found.points = out.first(packet.sample_count());
+      zero_.add_to(out.first(packet.sample_count()));
+      if (!fits) mark_unlikely(out.first(packet.sample_count()));
+    }
+    if constexpr (IsCounted) count(found, arrival_ns, out);
+    samples_lost_ += static_cast<std::uint64_t>(times.lost);
+    lost = times.lost > 0;
+    if (last_packet_ns_ != 0) {
+      largest_gap_ns_ =
+          std::max(largest_gap_ns_, detail::saturating_sub(arrival_ns, last_packet_ns_));
+    }
+    last_packet_ns_ = arrival_ns;
+    return found;
+  }
   /// By the angles: without arrivals nothing else shows it. Devices lose whole packets: less than half of one is none.
   [[nodiscard]] std::int64_t lost_before(const decoded& found) noexcept {
     const sample_gap gap = gaps_.next(found, std::exchange(has_skipped_, false), 0.0);

@@ -24,6 +24,7 @@ service_core::service_core(service_options options, const std::vector<service_li
   if (lidars.size() > 1 || options_.merges) {
     deskew = merged_deskewing(options_, lidars.front());
     std::vector<scan_merger::lidar> parts;
+    parts.reserve(lidars.size());
     for (const service_lidar& each : lidars)
       parts.push_back({each.name, each.mount.value_or(mounting{})});
     merger_.emplace(deskew, parts);
@@ -147,8 +148,9 @@ void service_core::add_merged(std::size_t lidar, const scan& found,
     take_other_odometry(lidars_.front(), found, ahead_ns);
     return path_.until(end_ns);
   };
+  scan_merger& merger = *merger_;  // NOLINT(bugprone-unchecked-optional-access): see add()
   const auto joined =
-      merger_->add(lidar, here.shaper, found.time_ns(), found.duration_ns, made.made.kept, path);
+      merger.add(lidar, here.shaper, found.time_ns(), found.duration_ns, made.made.kept, path);
   if (!joined) return;
   made.made.for_grid = true;
   made.for_grid = joined->for_grid;
