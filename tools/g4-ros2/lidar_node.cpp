@@ -58,6 +58,7 @@ lidar_node::lidar_node(dds::bus& on, const ros2_options& options,
     };
   }
   std::vector<service_lidar> read;
+  read.reserve(lidars.size());
   for (std::size_t i = 0; i < lidars.size(); ++i)
     read.push_back(lidar_of(options, options_of(i), options.merges ? lidars[i].name : ""));
   service_ = make_service(std::move(read), std::move(how), {{this, g4lidar::delivery::in_reader}});
@@ -67,7 +68,8 @@ lidar_node::lidar_node(dds::bus& on, const ros2_options& options,
     if (place_) place_->publish(place_message(options, frame_id_of(options, lidars), *mount));
   }
   const bool is_known = service_->has_odometry();
-  robot_.emplace(on, options, name_space_, robot_knowledge{is_known, is_played_});
+  robot_ = std::make_unique<robot_messages>(on, options, name_space_,
+                                            robot_knowledge{is_known, is_played_});
   if (options.common.deskew == deskewing::by_path && !is_known && options.topics.odometry != "off")
     driven_ = std::make_unique<odometry_subscription>(
         on, full_name(name_space_, options.topics.odometry));

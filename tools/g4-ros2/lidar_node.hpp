@@ -61,7 +61,7 @@ class lidar_node final : private service_sink {
   scan_messages messages_;
   std::unique_ptr<dds::publisher> place_;
   std::unique_ptr<odometry_subscription> driven_;
-  std::optional<robot_messages> robot_;
+  std::unique_ptr<robot_messages> robot_;
   std::atomic<std::int64_t> now_ns_ = 0;    // the newest stamp of a recording
   std::unique_ptr<lidar_service> service_;  // its threads end first
 };

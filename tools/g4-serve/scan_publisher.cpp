@@ -219,6 +219,7 @@ void scan_publisher::send_hello(bool sends) {
 
 page_status scan_publisher::tick() {
   std::vector<page_status> all;
+  all.reserve(lidars_.size());
   for (std::size_t i = 0; i < lidars_.size(); ++i) all.push_back(lidars_[i].status(*service_, i));
   page_status status = options_.merges ? merged_status(std::move(all)) : std::move(all.front());
   registry_.status(status_text(status));

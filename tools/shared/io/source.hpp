@@ -93,7 +93,9 @@ class opened_source {
   /// The bytes of its file, and how many of them have been read; 0 of all else.
   [[nodiscard]] std::uint64_t size() const noexcept { return size_; }
   [[nodiscard]] std::uint64_t position() const noexcept {
-    return played_ != nullptr ? played_->position() : lidar_->counts().bytes;
+    return played_ != nullptr
+               ? played_->position()
+               : lidar_->counts().bytes;  // NOLINT(bugprone-unchecked-optional-access): as lidar()
   }
   /// The first bytes of raw bytes: what is known of them where they are not packets.
   [[nodiscard]] std::span<const std::uint8_t> beginning() const noexcept { return beginning_; }
