@@ -45,7 +45,9 @@ class point_output {
   /// Makes the writer, with the columns and the turn of the model. After open().
   void use_model(const model& which);
 
-  [[nodiscard]] output& out() noexcept { return *out_; }
+  [[nodiscard]] output& out() noexcept {
+    return *out_;  // NOLINT(bugprone-unchecked-optional-access): made by open()
+  }
   [[nodiscard]] shaping_writer& writer() noexcept { return *writer_; }
   [[nodiscard]] const shaping_writer& writer() const noexcept { return *writer_; }
   /// Writes points.
