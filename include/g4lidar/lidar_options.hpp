@@ -96,11 +96,11 @@ struct lidar_options {
   lidar_tuning tuning{};       ///< Times and speeds of the connection.
 
   playback_options playback{};  ///< How a file is played.
-  /// Samples per second of raw bytes in a file, which contain no times; 1 to 1,000,000. If it is not
-  /// given, first_rate_hz() of the model.
+  /// Samples per second of raw bytes, which contain no times; 1 to 1,000,000. The times of points are counted at this
+  /// rate. If it is not given, those of a file are counted at first_rate_hz() of the model, and those of a pipe are
+  /// estimated from when the bytes are read.
   std::optional<std::uint32_t> raw_sample_rate_hz{};
-  /// Raw bytes of a pipe: the times of points are counted in the same way, from when the first one was read, instead of
-  /// estimated from when the bytes are read. Those of a file always are.
+  /// Of a pipe: times are counted at first_rate_hz(), too.
   bool counts_times = false;
   /// Called with the connector of each attempt to open, if it is set: to record, to observe. What it
   /// returns is used instead; its error ends the attempt.

@@ -73,7 +73,7 @@ struct service_demand {
   bool kept = false;      ///< service_scan::kept.
   bool runs = false;      ///< All else, which is always given: motors do not rest.
 
-  /// Whether motors run for it.
+  /// Whether the motors have to run.
   [[nodiscard]] bool has_any() const noexcept { return for_grid || kept || runs; }
 };
 
@@ -89,7 +89,7 @@ struct lidar_place {
 /// A scan as a service gives it: of one lidar in its own frame, or of all in that of the robot, with the turn of a G4.
 /// Valid during a call.
 struct service_scan {
-  /// What was wanted by a sink, and `for_grid` of several lidars; the rest is empty.
+  /// Which of the products were made: those that a sink wants, and `for_grid` of merged lidars. The others are empty.
   service_demand made{};
   scan for_grid{};  ///< For fill_grid() and fill_laser_scan().
   scan kept{};      ///< What the filters keep.
@@ -121,6 +121,7 @@ class G4LIDAR_API service_sink {
   [[nodiscard]] virtual service_demand wanted() const = 0;
 
   /// A shaped scan, also if nothing of it is wanted; of merged lidars one for each revolution of the first one that works.
+  /// Of one lidar also pieces, with lidar_options::partial_scans.
   virtual void on_scan(const service_scan& /*made*/) {}
   /// A pose of the robot that the source states, in time with the points; `stamp_ns` as service_scan::stamp_ns().
   virtual void on_odometry(const stamped_odometry& /*now*/, std::int64_t /*stamp_ns*/) {}
@@ -135,12 +136,12 @@ class G4LIDAR_API service_sink {
   /// The state of its reader, or the reason for it, has changed.
   virtual void on_state(std::size_t /*lidar*/, reader_state /*state*/,
                         const std::optional<error>& /*why*/) {}
-  /// A setting in lidar_service::value() has changed, or the model; not a filter. `refused`: why settings could not be made when it was
-  /// opened; else empty.
+  /// A setting in lidar_service::value() or the model has changed. `refused`: why settings could not be made when the
+  /// lidar was opened; else empty.
   virtual void on_values(std::size_t /*lidar*/, const std::string& /*refused*/) {}
 
   // Only of a sink that is called in the threads of lidars: see delivery.
-  /// It was opened; its scan is not started yet: it can be asked.
+  /// It was opened; its scan is not started yet: it can be asked. Calls for several lidars may overlap.
   virtual void on_open(std::size_t /*lidar*/, g4lidar::lidar& /*device*/) {}
   /// A scan as it was measured, before it is shaped; also a piece of one.
   virtual void on_measured(std::size_t /*lidar*/, const scan& /*found*/) {}
@@ -148,7 +149,8 @@ class G4LIDAR_API service_sink {
 
 /// In which thread a sink is called.
 enum class delivery : std::uint8_t {
-  /// In one of its own, with copies: of scans the newest four, of all else the newest 64. What does not fit is left out.
+  /// In one of its own, with copies: of scans the newest four, of states and times the newest one of each lidar, of all
+  /// else the newest 64. What does not fit is left out.
   /// A slow sink delays nobody.
   own_thread,
   in_reader,  ///< In those of the lidars: it returns within 20 ms.
@@ -173,8 +175,9 @@ struct service_output {
 ///     std::this_thread::sleep_for(60s);
 class G4LIDAR_API lidar_service {
  public:
-  /// Opens nothing but recordings, for their odometry. One lidar, or 2 to 32 that are merged. Fails with bad_option,
-  /// which names what is wrong: no lidar, too many, two of one name, a setting that does not exist, no sink.
+  /// Opens nothing but a recording, for its odometry. One lidar, or 2 to 32 that are merged. Fails with bad_option,
+  /// which names what is wrong: no lidar, too many, two of one name, a setting that does not exist, a file that is to be
+  /// merged, an output without a sink.
   [[nodiscard]] static result<std::unique_ptr<lidar_service>> make(
       std::vector<service_lidar> lidars, service_options options,
       std::vector<service_output> outputs);
@@ -183,7 +186,7 @@ class G4LIDAR_API lidar_service {
   /// Like stop().
   ~lidar_service();
 
-  /// Starts the threads; a further call does nothing. Fails with system, and with gone after stop().
+  /// Starts the threads that do not run yet. Fails with system, and with gone after stop().
   [[nodiscard]] result<void> start();
   /// Ends the threads and stops the motors. No sink is called after it. Not in a sink, nor in a function that is given
   /// to change() or ask(). See background_reader::stop().
@@ -201,7 +204,11 @@ class G4LIDAR_API lidar_service {
   [[nodiscard]] lidar_counts counts(std::size_t lidar) const;
   /// The same: background_reader::ask().
   void ask(std::size_t lidar, std::function<void(g4lidar::lidar*)> what);
-  /// What running_diagnosis finds of it. Of directions that are left out nothing is expected.
+  /// Why it is lost, could not be opened or has ended, if that is an error: not at the end of a file.
+  [[nodiscard]] std::optional<error> failure_of(std::size_t lidar) const;
+  /// Whether all have ended.
+  [[nodiscard]] bool has_ended() const;
+  /// The judgement of running_diagnosis, of the directions that the filters keep.
   [[nodiscard]] std::vector<stage_report> stages(std::size_t lidar) const;
   /// Its model as it is read; null before it is opened.
   [[nodiscard]] const g4lidar::model* model(std::size_t lidar) const;
@@ -210,9 +217,11 @@ class G4LIDAR_API lidar_service {
   /// A point::time_ns of it as a stamp since 1970; 0 as long as it is not known. Only in its thread.
   [[nodiscard]] std::int64_t stamp_ns(std::size_t lidar, std::int64_t time_ns) const;
 
-  /// Changes values, all or none: settings of this lidar, filters of all. `done` is called once, in any thread, with why
-  /// not, or an empty text: at the latest after `longest`, then the lidar may still be set later; at once if it is being
-  /// searched, before start(), and after stop(), where filters are changed nevertheless if no setting is. Settings that were made are undone as far as the lidar answers.
+  /// Changes values, all or none: settings of this lidar, filters of all. `done` is called once, in any thread, with the
+  /// reason if they are refused, else with an empty text. It is called after `longest` at the latest; then the lidar may
+  /// still be set later. Settings are refused at once while the lidar is searched, before start() and after stop();
+  /// filters alone can always be changed. If a setting is refused, those before it are undone as far as the lidar
+  /// answers.
   void change(std::size_t lidar, std::vector<named_value> wanted,
               std::function<void(const std::string&)> done,
               std::chrono::milliseconds longest = std::chrono::seconds(10));
@@ -239,6 +248,7 @@ class G4LIDAR_API lidar_service {
  private:
   struct state;
   explicit lidar_service(std::unique_ptr<state> made);
+  [[nodiscard]] result<void> begin();
   std::unique_ptr<state> state_;
 };
 

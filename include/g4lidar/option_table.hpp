@@ -40,8 +40,6 @@ inline constexpr std::uint8_t raw_file = 4;   ///< A file of raw bytes.
 inline constexpr std::uint8_t pipe = 8;       ///< Raw bytes as they come.
 inline constexpr std::uint8_t port =
     16;  ///< Beside `live`: a port of this computer, which may be searched.
-inline constexpr std::uint8_t counted_pipe =
-    32;  ///< Beside `pipe`: with lidar_options::counts_times.
 inline constexpr std::uint8_t file = recording | raw_file;      ///< Both.
 inline constexpr std::uint8_t any = live | file | pipe | port;  ///< All.
 }  // namespace option_user

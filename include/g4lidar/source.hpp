@@ -45,6 +45,11 @@ enum class source_kind : std::uint8_t {
 /// By the form of the name, and by what is at a path now. A path where nothing is names a device, with
 /// `file:` raw bytes.
 [[nodiscard]] G4LIDAR_API source_kind kind_of_source(std::string_view name);
+/// Whether it names a recording or raw bytes, which have no lidar that can be asked.
+[[nodiscard]] inline bool names_file(std::string_view name) {
+  const source_kind kind = kind_of_source(name);
+  return kind == source_kind::recording || kind == source_kind::raw_bytes;
+}
 /// The path of a name that is a file, without `file:`, and without `?model=` unless there is a file with
 /// it in its name. Of a device: its name without `?model=`.
 [[nodiscard]] G4LIDAR_API std::string path_of_source(std::string_view name);
@@ -64,8 +69,8 @@ enum class source_kind : std::uint8_t {
 
 /// Which of the options the source that `options.device` names cannot use, as an error; nothing if it can use all.
 /// A file has no connection and no settings: `baud`, `reconnect`, the settings, and of the tuning all but `batch` and
-/// `transport_delay` are for lidars, and `probe_all_ports` for ports. `playback` is for files, and `raw_sample_rate_hz` for files of raw bytes; a pipe has
-/// neither. lidar::open() and connector_for() fail with this error: bad_option, with the detail other_source.
+/// `transport_delay` are for lidars, and `probe_all_ports` for ports. `playback` is for files,
+/// `raw_sample_rate_hz` for raw bytes, and `counts_times` for those of a pipe or a file. lidar::open() and connector_for() fail with this error: bad_option, with the detail other_source.
 [[nodiscard]] G4LIDAR_API std::optional<error> problem_with_source(const lidar_options& options);
 /// The same options without these: for a program that opens whatever its user names.
 [[nodiscard]] G4LIDAR_API lidar_options usable_options(lidar_options options);

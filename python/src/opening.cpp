@@ -9,6 +9,8 @@
 
 #include <atomic>
 #include <chrono>
+#include <cmath>
+#include <cstdint>
 #include <limits>
 #include <memory>
 #include <mutex>
@@ -149,7 +151,7 @@ live_lidar* open_by_keywords(
   options.playback.loop = loop;
   options.playback.from_ns = in_ns(begin);
   if (end) options.playback.to_ns = in_ns(*end);
-  options.raw_sample_rate_hz = raw_sample_rate_hz;
+  if (raw_sample_rate_hz.value_or(0) != 0) options.raw_sample_rate_hz = raw_sample_rate_hz;
   if (zero_angle) take(options, "zero_angle", *zero_angle);
   return open_lidar(device, options, record, overwrite);
 }
@@ -249,12 +251,13 @@ std::string text_of_open() {
     const std::string name =
         each.setting != nullptr ? keyword_of(*each.setting) : std::string(each.name);
     made.append("- `").append(name).append("`: ").append(description_of(shown));
+    const auto shown_limit = [&](double limit) {
+      const bool is_whole = unit == 1.0 && limit == std::trunc(limit);
+      return std::string(is_whole ? nb::str(nb::int_(static_cast<std::int64_t>(limit))).c_str()
+                                  : nb::str(nb::float_(limit * unit)).c_str());
+    };
     if (const auto [least, most, step] = each.range; least < most)
-      made.append(" (")
-          .append(nb::str(nb::float_(least * unit)).c_str())
-          .append(" to ")
-          .append(nb::str(nb::float_(most * unit)).c_str())
-          .append(")");
+      made.append(" (" + shown_limit(least) + " to " + shown_limit(most) + ")");
     made += ".\n";
   }
   return made +

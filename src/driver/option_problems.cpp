@@ -61,11 +61,6 @@ error bad_setting(const setting_info& of, const model& which, std::uint16_t give
   return bad(words, given, "");
 }
 
-option_users with_counted(option_users users, const lidar_options& options) noexcept {
-  const bool counts = (users & pipe) != 0 && options.counts_times;
-  return counts ? static_cast<option_users>(users | counted_pipe) : users;
-}
-
 std::string_view words_for(option_users users) noexcept {
   switch (users) {
     case live:
@@ -76,7 +71,6 @@ std::string_view words_for(option_users users) noexcept {
     case raw_file:
       return "a file of raw bytes";
     case pipe:
-    case pipe | counted_pipe:
       return "a pipe";
     default:
       return "a file";
@@ -87,7 +81,6 @@ std::string_view words_for(option_users users) noexcept {
 
 std::optional<error> problem_with_users(const lidar_options& options, option_users users) noexcept {
   const lidar_options usual;
-  users = with_counted(users, options);
   for (const parameter& each : all_parameters()) {
     if (each.access == nullptr || (each.users & users) != 0) continue;
     if (!each.access->differs(options, usual)) continue;
@@ -101,7 +94,6 @@ std::optional<error> problem_with_users(const lidar_options& options, option_use
 
 lidar_options without_others(lidar_options options, option_users users) {
   const lidar_options usual;
-  users = with_counted(users, options);
   for (const parameter& each : all_parameters()) {
     if (each.access != nullptr && (each.users & users) == 0) each.access->copy(options, usual);
   }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 #include <utility>
@@ -49,7 +50,10 @@ class timed_decoder {
                            .layout = which_->samples.layout});
   }
   /// The following bytes may be earlier ones. Before follow().
-  void forget() noexcept { baud_.reset(); }
+  void forget() noexcept {
+    baud_.reset();
+    counted_until_ns_ = std::numeric_limits<std::int64_t>::min();
+  }
   /// What is added to each angle.
   [[nodiscard]] zero_offset& zero() noexcept { return zero_; }
   [[nodiscard]] const zero_offset& zero() const noexcept { return zero_; }
@@ -60,6 +64,7 @@ class timed_decoder {
   /// A scan begins, or continues after an interruption. `sample_rate_hz` is nominal, or with `counts_times` that at which
   /// the times are counted from the samples that came, as those of raw bytes.
   void begin(std::uint32_t sample_rate_hz, bool counts_times = false) noexcept {
+    if (counted_) counted_until_ns_ = counted_ns();
     counted_hz_ = counts_times ? sample_rate_hz : 0;
     clock_.reset(expected_rate_of(*which_, sample_rate_hz));
     counted_.reset();
@@ -134,8 +139,14 @@ class timed_decoder {
   }
   /// By the angles: without arrivals nothing else shows it. Devices lose whole packets: less than half of one is none.
   [[nodiscard]] std::int64_t lost_before(const decoded& found) noexcept {
-    const sample_gap gap = gaps_.next(found, std::exchange(has_skipped_, false), 0.0);
-    return 2 * gap.lost < static_cast<std::int64_t>(found.sample_count) ? 0 : gap.lost;
+    const sample_gap gap = gaps_.next(found, has_skipped_, 0.0);
+    if (!found.suspect) has_skipped_ = false;
+    if (found.sample_count > 1) usual_samples_ = found.sample_count;  // one: a zero packet
+    return 2 * gap.lost < usual_samples_ ? 0 : gap.lost;
+  }
+  /// The time of the next sample.
+  [[nodiscard]] std::int64_t counted_ns() const noexcept {
+    return detail::wrapping_add(counted_from_ns_, counted_->now_ns());
   }
   /// The samples of a suspect packet were measured, too. A packet arrives one period after its last sample.
   void count(const decoded& found, std::int64_t arrival_ns,
@@ -144,12 +155,14 @@ class timed_decoder {
     if (!counted_) {
       sample_clock packet(counted_hz_);
       packet.tick(found.sample_count);
-      counted_from_ns_ = detail::saturating_sub(arrival_ns, packet.now_ns());
+      // A pipe may be read faster than its samples were measured: times do not go back.
+      counted_from_ns_ =
+          std::max(detail::saturating_sub(arrival_ns, packet.now_ns()), counted_until_ns_);
       counted_.emplace(counted_hz_);
     }
     if (found.suspect) return counted_->tick(found.sample_count);
     for (point& each : out.first(found.points.size())) {
-      each.time_ns = detail::wrapping_add(counted_from_ns_, counted_->now_ns());
+      each.time_ns = counted_ns();
       counted_->tick();
     }
   }
@@ -181,8 +194,10 @@ class timed_decoder {
   std::uint32_t counted_hz_ = 0;         // 0: clock_ has the times
   std::optional<sample_clock> counted_;  // from the first point on
   std::int64_t counted_from_ns_ = 0;
-  sample_counter gaps_;       // of counted times
-  bool has_skipped_ = false;  // bytes since the last packet
+  std::int64_t counted_until_ns_ = std::numeric_limits<std::int64_t>::min();  // before begin()
+  sample_counter gaps_;                                                       // of counted times
+  bool has_skipped_ = false;        // bytes since the last packet
+  std::int64_t usual_samples_ = 0;  // of a packet
   revolution_counter revolutions_;
   angle_check angles_;
   std::int64_t last_packet_ns_ = 0;  // since begin()

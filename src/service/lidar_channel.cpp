@@ -1,28 +1,19 @@
 // SPDX-License-Identifier: MIT
 #include "service/lidar_channel.hpp"
 
+#include <algorithm>
 #include <utility>
 
-#include "g4lidar/detail/saturating.hpp"
 #include "g4lidar/source.hpp"
 #include "service/service_core.hpp"
 
 namespace g4lidar {
-namespace {
-
-bool is_file_name(const std::string& source) {
-  const source_kind kind = kind_of_source(source);
-  return kind == source_kind::recording || kind == source_kind::raw_bytes;
-}
-
-}  // namespace
-
 lidar_channel::lidar_channel(service_lidar what, std::size_t index, service_core& core)
     : about_(std::move(what)),
       index_(index),
       core_(core),
-      is_file_(is_file_name(about_.options.device)),
-      wanted_(about_.settings.begin(), about_.settings.end()),
+      is_file_(names_file(about_.options.device)),
+      wanted_(about_.settings),
       reader_(observed_options(), {.wants_points = core.options().gives_points}, this) {
   // Merged lidars are on one robot: that of the first one.
   if (index_ > 0) return;
@@ -49,6 +40,10 @@ lidar_options lidar_channel::observed_options() {
   return made;
 }
 
+bool lidar_channel::is_failure(const error& why) const noexcept {
+  return why != problem::cancelled && !(is_file_ && why == problem::end_of_input);
+}
+
 std::optional<std::int64_t> lidar_channel::ahead_ns() const {
   const std::int64_t wall_ahead_ns = reader_.wall_ns(0);
   const auto& clock = core_.options().stamp_clock;
@@ -71,29 +66,49 @@ void lidar_channel::on_open(lidar& device) {
   if (simulation_ != nullptr) motion.simulated = mounting_on_robot(*simulation_);
   core_.opened(index_, motion);
   show_model(*device.recognition().model);
-  if (device.information().is_known())
-    settings_.fix("serial_number", std::string(device.information().serial_number()));
-  // It may be another one, or have lost them.
+  const bool is_named = device.information().is_known();
+  settings_.fix("serial_number",
+                is_named ? parameter_value(std::string(device.information().serial_number()))
+                         : parameter_value());
+  // Another device may be at the port, or this one has lost its settings.
   for (const parameter& each : all_parameters()) {
     if (each.kind == parameter_kind::device) settings_.fix(each.name, {});
   }
   if (core_.options().reads_settings && !is_file_) settings_.read_device(device);
-  std::vector<named_value> missing;
-  for (const auto& [name, value] : wanted_) {
-    if (settings_.value(*find_parameter(name)) != value) missing.emplace_back(name, value);
+  std::string refused;
+  for (const named_value& each : wanted_) {
+    if (settings_.value(*find_parameter(each.first)) == each.second) continue;
+    const std::string wrong = settings_.change(&device, std::span(&each, 1));
+    if (!wrong.empty()) refused += (refused.empty() ? "" : "; ") + wrong;
   }
-  const std::string refused = set(&device, missing);
-  core_.sinks().call([&](service_sink& to) {
-    to.on_open(index_, device);
-    to.on_values(index_, refused);
-  });
+  // They may ask the device, which takes its time: other lidars do not wait for it.
+  core_.sinks().each([&](service_sink& to) { to.on_open(index_, device); });
+  core_.sinks().call([&](service_sink& to) { to.on_values(index_, refused); });
 }
 
-std::string lidar_channel::set(lidar* device, const std::vector<named_value>& wanted) {
+std::string lidar_channel::set(lidar* device, const std::vector<named_value>& wanted,
+                               const std::function<std::string()>& then) {
+  std::vector<named_value> before;
+  for (const auto& [name, value] : wanted) {
+    const parameter* const row = find_parameter(name);
+    parameter_value now = row == nullptr ? parameter_value() : settings_.value(*row);
+    if (now != parameter_value()) before.emplace_back(name, std::move(now));
+  }
   std::string wrong = settings_.change(device, wanted);
   if (!wrong.empty()) return wrong;
-  for (const auto& [name, value] : wanted) wanted_.insert_or_assign(name, value);
-  return wrong;
+  wrong = then();
+  if (!wrong.empty()) {
+    static_cast<void>(settings_.change(device, before));
+    return wrong;
+  }
+  for (const named_value& each : wanted) {
+    const auto at = std::ranges::find(wanted_, each.first, &named_value::first);
+    if (at == wanted_.end())
+      wanted_.push_back(each);
+    else
+      *at = each;
+  }
+  return {};
 }
 
 void lidar_channel::follow_motion(std::span<const point> points) {
@@ -129,9 +144,7 @@ void lidar_channel::on_event(const lidar_event& what) {
 }
 
 void lidar_channel::on_state(reader_state state, const std::optional<error>& why) {
-  const bool is_end = why && is_file_ && *why == problem::end_of_input;
-  const bool is_problem = why && !is_end && *why != problem::cancelled;
-  if (is_problem && state != reader_state::lost && why->doing() == task::reading)
+  if (why && is_failure(*why) && state != reader_state::lost && why->doing() == task::reading)
     diagnosis_.add(*why);
   core_.sinks().call([&](service_sink& to) { to.on_state(index_, state, why); });
 }

@@ -5,7 +5,7 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
-#include <map>
+#include <functional>
 #include <mutex>
 #include <optional>
 #include <span>
@@ -35,9 +35,13 @@ class lidar_channel final : private reader_listener {
   [[nodiscard]] const lidar_parameters& settings() const noexcept { return settings_; }
   [[nodiscard]] const g4lidar::model* model() const noexcept { return model_; }
   [[nodiscard]] bool is_file() const noexcept { return is_file_; }
+  /// Not at the end of a file, nor where it was cancelled.
+  [[nodiscard]] bool is_failure(const error& why) const noexcept;
   [[nodiscard]] bool has_odometry() const noexcept { return has_odometry_; }
-  /// See service_lidar::settings: why these cannot be made, or empty. In its thread.
-  [[nodiscard]] std::string set(lidar* device, const std::vector<named_value>& wanted);
+  /// Makes settings, and from now on each time when it is opened: why not, or empty. `then` is called when they are made;
+  /// if it gives a reason, they are undone. In its thread.
+  [[nodiscard]] std::string set(lidar* device, const std::vector<named_value>& wanted,
+                                const std::function<std::string()>& then);
   /// See service_scan. In its thread.
   [[nodiscard]] std::optional<std::int64_t> ahead_ns() const;
 
@@ -61,7 +65,7 @@ class lidar_channel final : private reader_listener {
   running_diagnosis diagnosis_;
   const sim::simulated_source* simulation_ = nullptr;
   lidar_parameters settings_;
-  std::map<std::string, parameter_value> wanted_;  // the settings, in the thread
+  std::vector<named_value> wanted_;  // the settings, in the thread
   std::atomic<const g4lidar::model*> model_ = nullptr;
   background_reader reader_;  // its thread ends first
 };

@@ -2,6 +2,7 @@
 #include "g4lidar/lidar_service.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <condition_variable>
 #include <deque>
 #include <future>
@@ -12,6 +13,7 @@
 
 #include "g4lidar/detail/saturating.hpp"
 #include "g4lidar/diagnostics/diagnostic_message.hpp"
+#include "g4lidar/source.hpp"
 #include "g4lidar/standby.hpp"
 #include "service/lidar_channel.hpp"
 #include "service/pending_changes.hpp"
@@ -69,21 +71,17 @@ struct lidar_service::state {
   std::thread supervisor;
 
   /// A request wakes the threads of the lidars.
-  void rest(bool rests) {
+  void rest(bool wants_rest) {
     const std::lock_guard lock(rest_mutex);
+    const bool rests = wants_rest || !is_allowed;
     if (std::exchange(is_resting, rests) == rests) return;
     for (lidar_channel& each : channels) each.reader().rest(rests);
   }
   void update_rest() {
     const bool is_needed = !core.options().is_standby || core.sinks().wanted().has_any();
-    const bool rests = resting.rests(is_needed, standby::time_point::clock::now());
-    rest(rests || !is_allowed);
+    rest(resting.rests(is_needed, standby::time_point::clock::now()));
   }
   void supervise();
-  /// Why they cannot be made, or empty. In the thread of the lidar.
-  [[nodiscard]] std::string set(lidar_channel& channel, lidar* found,
-                                const std::vector<named_value>& device,
-                                const std::vector<named_value>& filters);
   [[nodiscard]] bool is_ended() {
     const std::lock_guard lock(mutex);
     return is_over;
@@ -118,31 +116,16 @@ void lidar_service::state::supervise() {
   }
 }
 
-std::string lidar_service::state::set(lidar_channel& channel, lidar* found,
-                                      const std::vector<named_value>& device,
-                                      const std::vector<named_value>& filters) {
-  std::vector<named_value> before;
-  for (const auto& [name, value] : device) {
-    const parameter* const row = find_parameter(name);
-    if (row == nullptr) continue;
-    const parameter_value now = channel.settings().value(*row);
-    if (now != parameter_value()) before.emplace_back(name, now);
-  }
-  // Others may have changed filters since then, and while the lidar is set.
-  std::string wrong = core.problem_with(filters);
-  if (wrong.empty()) wrong = channel.set(found, device);
-  if (!wrong.empty()) return wrong;
-  wrong = core.set_filters(filters);
-  if (!wrong.empty()) static_cast<void>(channel.set(found, before));
-  return wrong;
-}
-
 result<std::unique_ptr<lidar_service>> lidar_service::make(std::vector<service_lidar> lidars,
                                                            service_options options,
                                                            std::vector<service_output> outputs) {
   if (lidars.empty() || lidars.size() > most_lidars)
     return failure(task::opening, problem::bad_option, "lidars: 1 to 32 can be read at once");
+  const bool is_merged = lidars.size() > 1 || options.merges;
   for (std::size_t i = 0; i < lidars.size(); ++i) {
+    if (is_merged && names_file(lidars[i].options.device))
+      return failure(task::opening, problem::bad_option,
+                     "merging " + lidars[i].options.device + ": a file has a clock of its own");
     const auto later = std::span(lidars).subspan(i + 1);
     if (std::ranges::find(later, lidars[i].name, &service_lidar::name) != later.end())
       return failure(task::opening, problem::bad_option, "two lidars have the same name");
@@ -163,7 +146,15 @@ lidar_service::~lidar_service() { stop(); }
 
 result<void> lidar_service::start() {
   const std::lock_guard lock(state_->start_mutex);
-  if (state_->supervisor.joinable()) return {};
+  const auto started = state_->supervisor.joinable() ? result<void>() : begin();
+  if (!started) return started;
+  for (lidar_channel& each : state_->channels) {
+    if (const auto reads = each.reader().start(); !reads) return reads;
+  }
+  return {};
+}
+
+result<void> lidar_service::begin() {
   if (state_->is_ended())
     return failure(task::starting, problem::gone, "this service, which was stopped");
   if (const auto started = state_->core.sinks().start(); !started) return started;
@@ -174,9 +165,6 @@ result<void> lidar_service::start() {
     return failure(task::starting, problem::system, "a thread", refused.code().value());
   }
   state_->changes.begin();
-  for (lidar_channel& each : state_->channels) {
-    if (const auto started = each.reader().start(); !started) return started;
-  }
   return {};
 }
 
@@ -208,6 +196,17 @@ bool lidar_service::has_odometry() const noexcept {
 
 reader_status lidar_service::status(std::size_t lidar) const {
   return state_->channels[lidar].reader().status();
+}
+
+std::optional<error> lidar_service::failure_of(std::size_t lidar) const {
+  const std::optional<error> why = status(lidar).why;
+  return why && state_->channels[lidar].is_failure(*why) ? why : std::nullopt;
+}
+
+bool lidar_service::has_ended() const {
+  return std::ranges::all_of(state_->channels, [](const lidar_channel& each) {
+    return each.reader().status().state == reader_state::ended;
+  });
 }
 
 lidar_counts lidar_service::counts(std::size_t lidar) const {
@@ -244,14 +243,17 @@ void lidar_service::change(std::size_t lidar, std::vector<named_value> wanted,
   service_core& core = state_->core;
   if (device.empty()) return done(core.set_filters(filters));
   if (const std::string wrong = core.problem_with(filters); !wrong.empty()) return done(wrong);
-  const auto until = pending_change::clock::now() + std::min(longest, longest_change);
+  const auto until = pending_change::clock::now() + std::clamp(longest, 0ms, longest_change);
   const auto made = std::make_shared<pending_change>(lidar, until, std::move(done));
   if (!state_->changes.add(made)) return made->finish("the lidar is not connected");
   lidar_channel& channel = state_->channels[lidar];
   channel.reader().ask(
       [this, &channel, made, filters, settings = std::move(device)](g4lidar::lidar* found) {
         if (!made->claim()) return;
-        const std::string wrong = state_->set(channel, found, settings, filters);
+        // Others may have changed filters since then, and while the lidar is set.
+        std::string wrong = state_->core.problem_with(filters);
+        if (wrong.empty())
+          wrong = channel.set(found, settings, [&] { return state_->core.set_filters(filters); });
         made->finish(wrong);
         // Also if it is refused: what was made before may not be undone.
         state_->core.sinks().call([&](service_sink& to) { to.on_values(made->lidar(), {}); });
@@ -287,8 +289,8 @@ void lidar_service::seek(std::int64_t position_ns) {
 std::vector<diagnostic_status> lidar_service::state::statuses_of(lidar_channel& channel,
                                                                  const std::string* why) const {
   const reader_status now = channel.reader().status();
-  const bool is_end = channel.is_file() && now.why && *now.why == problem::end_of_input;
-  const std::string usual = now.why && !is_end ? now.why->message() : "";
+  const std::string usual =
+      now.why && channel.is_failure(*now.why) ? now.why->message() : std::string();
   diagnostic_status first = status_of(now, why != nullptr ? *why : usual);
   auto all = g4lidar::statuses_of(channel.diagnosis().stages(core.filters().current_filters()),
                                   channel.reader().counts(), first.hardware_id);

@@ -9,6 +9,7 @@
 #include <memory>
 #include <mutex>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace g4lidar {
@@ -25,7 +26,7 @@ class pending_change {
   [[nodiscard]] std::size_t lidar() const noexcept { return lidar_; }
   [[nodiscard]] clock::time_point until() const noexcept { return until_; }
   [[nodiscard]] bool is_answered() const noexcept { return is_answered_; }
-  /// By the one that makes it, or that withdraws it: whether it is the first one.
+  /// Whether the caller may make it or withdraw it: true for the first call.
   [[nodiscard]] bool claim() noexcept { return !is_claimed_.test_and_set(); }
   /// The first call calls the function.
   void finish(const std::string& why_not) {

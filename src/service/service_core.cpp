@@ -3,7 +3,6 @@
 
 #include <utility>
 
-#include "g4lidar/detail/saturating.hpp"
 #include "g4lidar/source.hpp"
 
 namespace g4lidar {

@@ -38,6 +38,7 @@ struct scan_copy {
 }  // namespace
 
 result<void> sink_queue::start() {
+  if (thread_.joinable()) return {};
   try {
     thread_ = std::thread([this] { run(); });
   } catch (const std::system_error& refused) {
@@ -78,15 +79,16 @@ void sink_queue::add(call made) {
   {
     const std::lock_guard lock(mutex_);
     if (is_over_) return;
-    // Of a state that nobody has seen yet the newest one counts.
-    if (made.what == kind::state) {
+    // It replaces a state or a time of this lidar that was not delivered yet.
+    const bool replaces = made.what == kind::state || made.what == kind::time;
+    if (replaces) {
       std::erase_if(calls_, [&made](const call& each) {
-        return each.what == kind::state && each.lidar == made.lidar;
+        return each.what == made.what && each.lidar == made.lidar;
       });
     }
     const kind what = made.what;
     calls_.push_back(std::move(made));
-    if (what != kind::state) drop_one(what);
+    if (!replaces) drop_one(what);
   }
   changed_.notify_one();
 }
@@ -101,7 +103,7 @@ void sink_queue::on_odometry(const stamped_odometry& now, std::int64_t stamp_ns)
 }
 
 void sink_queue::on_time(std::size_t lidar, std::int64_t stamp_ns) {
-  add({kind::other, lidar, [=](service_sink& to) { to.on_time(lidar, stamp_ns); }});
+  add({kind::time, lidar, [=](service_sink& to) { to.on_time(lidar, stamp_ns); }});
 }
 
 void sink_queue::on_motion(bool is_known, const std::string& why) {

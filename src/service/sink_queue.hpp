@@ -17,7 +17,7 @@
 namespace g4lidar {
 
 /// Never waits for the sink. When it is full the oldest scan, else the oldest call, is left out; but never the newest
-/// state of a lidar.
+/// state and time of a lidar.
 class sink_queue final : public service_sink {
  public:
   /// `target` outlives it.
@@ -39,7 +39,7 @@ class sink_queue final : public service_sink {
   void on_values(std::size_t lidar, const std::string& refused) override;
 
  private:
-  enum class kind : std::uint8_t { scan, state, other };
+  enum class kind : std::uint8_t { scan, state, time, other };
   struct call {
     kind what;
     std::size_t lidar;

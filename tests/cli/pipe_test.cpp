@@ -7,6 +7,8 @@
 #include <sys/ioctl.h>
 #include <sys/stat.h>
 #include <unistd.h>
+#include <chrono>
+#include <thread>
 
 #include <csignal>
 #include <string>
@@ -48,6 +50,19 @@ TEST_F(Pipe, IsFollowedWhileItIsBeingWritten) {
 TEST_F(Pipe, JsonlFollowsRevolutionByRevolution) {
   program started({"decode", "-", "--format", "jsonl", "--scans"});
   started.feed(cli::zero(0) + cli::turn() + cli::zero(0));
+  EXPECT_THAT(started.read_until("]}\n"), StartsWith(R"({"scan":0,"partial":false)"));
+  EXPECT_EQ(started.wait().code, 0);
+}
+
+// A revolution takes longer than --idle: the bytes that come count, and not its records.
+TEST_F(Pipe, IdleBeginsAgainWithEachByte) {
+  const std::string turns = cli::zero(0) + cli::turn() + cli::zero(0);
+  program started({"decode", "-", "--format", "jsonl", "--scans", "--idle", "2s"});
+  const std::size_t piece = turns.size() / 12 + 1;
+  for (std::size_t at = 0; at < turns.size(); at += piece) {
+    started.feed(turns.substr(at, piece));
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  }
   EXPECT_THAT(started.read_until("]}\n"), StartsWith(R"({"scan":0,"partial":false)"));
   EXPECT_EQ(started.wait().code, 0);
 }

@@ -36,8 +36,7 @@ const option_case certain{{"--model", "g4!"}, "ptsrb-"};
 const option_case listen{{"--listen"}, "pts"};
 const option_case leave{{"--leave-dtr"}, "pts"};
 const option_case all_ports{{"--all-ports"}, "p"};
-const option_case sample_rate{{"--sample-rate", "8000"}, "b"};
-const option_case counted_rate{{"--sample-rate", "8000"}, "b-"};  // of a pipe, too
+const option_case sample_rate{{"--sample-rate", "8000"}, "b-"};
 const option_case loop{{"--loop"}, "rb"};
 const option_case speed{{"--playback-speed", "2"}, "rb"};
 
@@ -57,8 +56,8 @@ std::vector<option_case> device_options(std::vector<option_case> more = {}) {
 
 const std::vector<verb_case>& all_verbs() {
   static const std::vector<verb_case> all{
-      {"dump", {"-n", "1"}, device_options({counted_rate}), "ptsrb-"},
-      {"scan", {"-n", "1"}, device_options({counted_rate}), "ptsrb-"},
+      {"dump", {"-n", "1"}, device_options({sample_rate}), "ptsrb-"},
+      {"scan", {"-n", "1"}, device_options({sample_rate}), "ptsrb-"},
       {"record", {"-n", "1", "--force", "-o", "OUT"}, device_options({sample_rate}), "ptsrb-"},
       {"stats", {"-n", "1"}, device_options(), "ptsrb"},
       {"packets", {"-n", "1"}, device_options(), "ptsrb-"},
@@ -71,7 +70,7 @@ const std::vector<verb_case>& all_verbs() {
       {"set", {"frequency=7"}, device_options(), "pts"},
       {"doctor", {"-d", "1s"}, {baud, model, all_ports}, "ptsrb"},
       {"acceptance", {"--alone", "--force", "--file", "OUT"}, {baud, model, all_ports}, "pts"},
-      {"decode", {"-n", "1"}, {model, counted_rate}, "rb-"},
+      {"decode", {"-n", "1"}, {model, sample_rate}, "rb-"},
       {"replay", {"-n", "1"}, {model, loop, speed}, "r"},
   };
   return all;

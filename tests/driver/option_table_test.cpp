@@ -102,6 +102,14 @@ TEST(OptionTable, SetsWhatItNames) {
   EXPECT_THAT(set(options, "grid", std::int64_t{720}), HasSubstr("grid"));  // of programs
 }
 
+// As people read them: the table is the only place of these texts.
+TEST(OptionTable, DescribesAnOption) {
+  const auto text_of = [](const char* name) { return description_of(*find_parameter(name)); };
+  EXPECT_EQ(text_of("zero_angle"), "Added to all angles, not the answer to command 93, degrees");
+  EXPECT_EQ(text_of("range_min"), "Shortest range that is kept, m");
+  EXPECT_THAT(text_of("baud"), HasSubstr("searched, or by the model"));
+}
+
 /// As the node has it: a setting that is on or off may also be nothing.
 std::uint8_t node_type(const parameter& of) {
   return of.type == 1 && of.setting != nullptr ? std::uint8_t{4} : of.type;

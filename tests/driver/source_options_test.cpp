@@ -149,7 +149,7 @@ TEST_F(SourceOptions, OfAPipe) {
   expect_refused(pipe_.text(), of_lidars());
   expect_refused(pipe_.text(), {of_ports});
   expect_refused(pipe_.text(), of_files());
-  expect_refused(pipe_.text(), {of_raw_files});
+  expect_used(pipe_.text(), {of_raw_files});
   expect_used(pipe_.text(), of_all());
 }
 

@@ -22,7 +22,6 @@
 
 #include "g4lidar/lidar.hpp"
 #include "g4lidar/recording/writer.hpp"
-#include "g4lidar/sim/scanner.hpp"
 #include "recorded_run.hpp"
 #include "support/packet_maker.hpp"
 
@@ -129,35 +128,6 @@ std::vector<point> points_of(const lidar_options& options) {
   return all;
 }
 
-// Of two other packets in turn the first half is lost.
-TEST_F(RawBytes, OnlyAPacketWithWrongAnglesIsUnlikely) {
-  sim::scanner scanner(sim::built_in_world(), {});
-  std::string raw;
-  std::vector<float> expected;
-  for (int i = 0; i < 400; ++i) {
-    const sim::sent_packet packet = scanner.next();
-    bytes data = packet.data;
-    const packet_view view = *packet_view::from(data);
-    made::packet turned(view.ct(), (view.first_angle_64ths() + 640) % turn_64ths,
-                        (view.last_angle_64ths() + 640) % turn_64ths, view.sample_count());
-    for (std::size_t k = 0; k < view.sample_count(); ++k) {
-      turned.set(k, view.sample(k));
-      if (i == 200) expected.push_back(static_cast<float>(view.sample(k)) * 0.25F);
-    }
-    if (i == 200) data = turned.data();
-    if (i == 220 || i == 221) data = data.last(data.size() / 2);
-    raw.append(data.begin(), data.end());
-  }
-  ASSERT_EQ(expected.size(), 40U);
-  std::ofstream(path_, std::ios::binary) << raw;
-  std::vector<float> unlikely_mm;
-  for (const point& each : points_of({.device = path_})) {
-    if ((each.flags & point_flags::unlikely) != point_flags::none)
-      unlikely_mm.push_back(each.range_mm);
-  }
-  EXPECT_EQ(unlikely_mm, expected);
-}
-
 std::string suspect_packet() {
   const made::packet made(0, 20 * 64, 19 * 64, std::vector<std::uint16_t>(2, 4000));
   return {made.data().begin(), made.data().end()};
@@ -194,14 +164,33 @@ TEST_F(RawBytes, OfAPipe_HaveCountedTimesIfTheyAreWanted) {
   for (int i = 0; i < 100; ++i) all += packet_of(30);
   ASSERT_EQ(::mkfifo(path_.c_str(), 0600), 0);
   std::thread writer([&] { std::ofstream(path_, std::ios::binary) << all; });
-  const std::vector<point> read = points_of(
-      {.device = path_, .model = &g4_model, .raw_sample_rate_hz = 7, .counts_times = true});
+  const std::vector<point> read =
+      points_of({.device = path_, .model = &g4_model, .raw_sample_rate_hz = 7});
   writer.join();
   ASSERT_EQ(read.size(), 3000U);
   for (std::size_t i = 0; i < read.size(); ++i) {
     const auto since_ns = static_cast<std::int64_t>(i) * second_ns / 7;
     ASSERT_EQ(read[i].time_ns - read[0].time_ns, since_ns) << i;
   }
+}
+
+TEST_F(RawBytes, OfAPipeThatIsStoppedAndStarted_TimesDoNotGoBack) {
+  std::string all;
+  for (int i = 0; i < 2000; ++i) all += packet_of(30);
+  ASSERT_EQ(::mkfifo(path_.c_str(), 0600), 0);
+  std::thread writer([&] { std::ofstream(path_, std::ios::binary) << all; });
+  auto device = lidar::open({.device = path_, .model = &g4_model, .raw_sample_rate_hz = 7});
+  ASSERT_TRUE(device && device->start());
+  const auto first = device->next_points(std::chrono::seconds(10));
+  ASSERT_TRUE(first);
+  const std::int64_t until_ns = first->back().time_ns;
+  ASSERT_TRUE(device->stop());
+  ASSERT_TRUE(device->start());
+  const auto second = device->next_points(std::chrono::seconds(10));
+  ASSERT_TRUE(second);
+  EXPECT_GT(second->front().time_ns, until_ns);
+  while (device->next_points(std::chrono::seconds(10))) continue;
+  writer.join();
 }
 
 // A file without a packet: no scan ends the call.

@@ -36,7 +36,7 @@ service_lidar lidar_of(const ros2_options& options, const common_options& how,
 }  // namespace
 
 lidar_node::lidar_node(dds::bus& on, const ros2_options& options,
-                       const std::vector<named_source>& lidars)
+                       const std::vector<named_source>& lidars, bool is_first)
     : options_(options),
       lidars_(lidars),
       name_space_(name_space_of(options, lidars)),
@@ -69,7 +69,7 @@ lidar_node::lidar_node(dds::bus& on, const ros2_options& options,
   }
   const bool is_known = service_->has_odometry();
   robot_ = std::make_unique<robot_messages>(on, options, name_space_,
-                                            robot_knowledge{is_known, is_played_});
+                                            robot_knowledge{is_known, is_first && is_played_});
   if (options.common.deskew == deskewing::by_path && !is_known && options.topics.odometry != "off")
     driven_ = std::make_unique<odometry_subscription>(
         on, full_name(name_space_, options.topics.odometry));
@@ -113,6 +113,11 @@ service_demand lidar_node::wanted() const {
   return {.for_grid = messages_.wants_scan(), .kept = messages_.wants_points()};
 }
 
+void lidar_node::on_open(std::size_t lidar, g4lidar::lidar& device) {
+  logger::verbose(fmt::format("opened {}\n", device.name()));
+  if (is_played_) now_ns_ = service_->stamp_ns(lidar, device.player()->begin_ns());
+}
+
 void lidar_node::on_scan(const service_scan& made) {
   if (made.kept.is_piece()) return;
   if (made.made.for_grid && messages_.wants_scan()) messages_.publish_scan(made);
@@ -143,8 +148,10 @@ void lidar_node::on_state(std::size_t lidar, reader_state state, const std::opti
                            name_of(state), text.empty() ? "" : ". ", text));
 }
 
-void lidar_node::on_values(std::size_t /*lidar*/, const std::string& refused) {
-  if (!refused.empty()) logger::info(in_tool_words(refused) + "\n");
+void lidar_node::on_values(std::size_t lidar, const std::string& refused) {
+  const std::string& name = lidars_[lidar].name;
+  if (!refused.empty())
+    logger::info((name.empty() ? "" : name + ": ") + in_tool_words(refused) + "\n");
 }
 
 }  // namespace g4_tool

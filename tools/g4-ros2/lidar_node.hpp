@@ -21,8 +21,10 @@ namespace g4_tool {
 
 class lidar_node final : private service_sink {
  public:
-  /// `lidars`: one, or those that are merged. `on` and `options` outlive it. Throws a failure, and bad_value.
-  lidar_node(dds::bus& on, const ros2_options& options, const std::vector<named_source>& lidars);
+  /// `lidars`: one, or those that are merged. `is_first`: of several nodes, the one that publishes /clock. `on` and
+  /// `options` outlive it. Throws a failure, and bad_value.
+  lidar_node(dds::bus& on, const ros2_options& options, const std::vector<named_source>& lidars,
+             bool is_first);
 
   /// Opens the lidars, once. Throws a failure.
   void start();
@@ -31,6 +33,7 @@ class lidar_node final : private service_sink {
   /// Allows or forbids the motors to run, by a command of a user.
   void allow(bool runs) noexcept { service_->allow(runs); }
 
+  [[nodiscard]] bool has_ended() const { return service_->has_ended(); }
   [[nodiscard]] std::size_t size() const noexcept { return lidars_.size(); }
   /// The namespace of the topics of a lidar.
   [[nodiscard]] std::string name_space(std::size_t lidar) const;
@@ -42,6 +45,7 @@ class lidar_node final : private service_sink {
 
  private:
   [[nodiscard]] service_demand wanted() const override;
+  void on_open(std::size_t lidar, g4lidar::lidar& device) override;
   void on_scan(const service_scan& made) override;
   void on_odometry(const stamped_odometry& now, std::int64_t stamp_ns) override;
   void on_time(std::size_t lidar, std::int64_t stamp_ns) override;

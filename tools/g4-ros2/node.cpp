@@ -34,10 +34,11 @@ class node {
         bus_(dds::read_network(options.transport.domain, options.transport.interface)) {
     const std::vector<named_source> lidars = sources_of(options_);
     if (options_.merges) {
-      nodes_.push_back(std::make_unique<lidar_node>(bus_, options_, lidars));
+      nodes_.push_back(std::make_unique<lidar_node>(bus_, options_, lidars, true));
     } else {
       for (const named_source& each : lidars)
-        nodes_.push_back(std::make_unique<lidar_node>(bus_, options_, std::vector{each}));
+        nodes_.push_back(
+            std::make_unique<lidar_node>(bus_, options_, std::vector{each}, nodes_.empty()));
     }
     if (const std::string name = run_topic(options_); name != "off") {
       run_.emplace(bus_, full_name(options_.name_space, name), [this](bool runs) {
@@ -65,6 +66,7 @@ class node {
     }
     service_.stopping();
     const std::optional<failure> why = failure_of_any();
+    for (const auto& each : nodes_) each->allow(false);  // all motors, before each is waited for
     nodes_.clear();
     bus_.close();
     if (why) throw failure(*why);
@@ -74,11 +76,7 @@ class node {
  private:
   /// Whether all lidars have ended.
   [[nodiscard]] bool has_ended() const {
-    bool is_over = true;
-    for_each_lidar([&](const lidar_node& each, std::size_t lidar) {
-      is_over = is_over && each.state(lidar) == reader_state::ended;
-    });
-    return is_over;
+    return std::ranges::all_of(nodes_, [](const auto& each) { return each->has_ended(); });
   }
 
   [[nodiscard]] std::optional<failure> failure_of_any() const {

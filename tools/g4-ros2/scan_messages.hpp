@@ -35,8 +35,6 @@ class scan_messages {
   [[nodiscard]] bool wants_scan() const { return scan_ && scan_->is_wanted(); }
   /// The same.
   [[nodiscard]] bool wants_points() const { return points_ && points_->is_wanted(); }
-  /// Whether somebody reads one of them. *Any thread.*
-  [[nodiscard]] bool is_wanted() const { return wants_scan() || wants_points(); }
   /// Of those that are published. *Any thread.*
   [[nodiscard]] named_counts counts() const;
 

@@ -4,7 +4,6 @@
 #include <memory>
 #include <utility>
 
-#include "g4lidar/source.hpp"
 #include "io/service_source.hpp"
 #include "io/source.hpp"
 
@@ -31,11 +30,6 @@ service_lidar served_lidar::for_service() {
   service_lidar made = service_lidar_of(options_, {.playback = playback_, .wrap = std::move(tap)});
   made.name = name_;
   return made;
-}
-
-bool served_lidar::is_live() const {
-  const source_kind kind = kind_of_source(options_.source);
-  return kind == source_kind::device || kind == source_kind::simulated;
 }
 
 void served_lidar::add(const g4lidar::scan& found) {

@@ -11,6 +11,7 @@
 #include "cli/named_sources.hpp"
 #include "cli/serve_verb.hpp"
 #include "g4lidar/lidar_service.hpp"
+#include "g4lidar/source.hpp"
 #include "lidar_rates.hpp"
 #include "page_recorder.hpp"
 
@@ -29,7 +30,7 @@ class served_lidar {
   [[nodiscard]] const std::string& name() const noexcept { return name_; }
   [[nodiscard]] const common_options& options() const noexcept { return options_; }
   /// Whether it is a lidar or a simulated one.
-  [[nodiscard]] bool is_live() const;
+  [[nodiscard]] bool is_live() const { return !names_file(options_.source); }
 
   // In the thread of the reader.
   [[nodiscard]] page_recorder& recorder() noexcept { return recorder_; }

@@ -29,23 +29,20 @@ constexpr auto change_time = 10s;
 
 }  // namespace
 
-bool is_file(const std::string& source) {
-  const source_kind kind = g4lidar::kind_of_source(source);
-  return kind == source_kind::recording || kind == source_kind::raw_bytes;
-}
-
 lidar_session::lidar_session(rclcpp_lifecycle::LifecycleNode& node, lidar_topics& topics,
                              session_options options)
     : node_(node),
       topics_(topics),
       options_(std::move(options)),
-      is_file_(is_file(options_.lidars.front().options.device)),
+      is_file_(g4lidar::names_file(options_.lidars.front().options.device)),
       motion_(node, topics, options_.motion) {
   const std::string& source = options_.lidars.front().options.device;
   g4lidar::service_options& how = options_.service;
   how.gives_points = is_file_ || g4lidar::has_simulated_robot(source);
-  how.stamp_clock = [clock = node.get_clock()](std::int64_t wall_ahead_ns) {
-    return ahead_by(*clock, wall_ahead_ns);
+  how.stamp_clock = [this, clock = node.get_clock()](std::int64_t wall_ahead_ns) {
+    std::optional<std::int64_t> made;
+    guard(node_, [&] { made = ahead_by(*clock, wall_ahead_ns); });
+    return made;
   };
   how.other_odometry = std::bind_front(&robot_motion::take, &motion_);
   constexpr auto by = g4lidar::delivery::in_reader;
@@ -170,18 +167,8 @@ void lidar_session::restart_file() {
   wait(change_time, [this] { return failure() || !has_ended(); });
 }
 
-bool lidar_session::has_ended() const {
-  return is_each(
-      [](std::size_t /*lidar*/, reader_state state) { return state == reader_state::ended; });
-}
-
-bool lidar_session::is_problem(const g4lidar::error& why) const {
-  return why != g4lidar::problem::cancelled && !(is_file_ && why == g4lidar::problem::end_of_input);
-}
-
 std::optional<g4lidar::error> lidar_session::failure() const {
-  const auto why = has_ended() ? service_->status(0).why : std::nullopt;
-  return why && is_problem(*why) ? why : std::nullopt;
+  return has_ended() ? service_->failure_of(0) : std::nullopt;
 }
 
 g4lidar::service_demand lidar_session::wanted() const {
@@ -230,9 +217,10 @@ void lidar_session::on_event(std::size_t lidar, const g4lidar::lidar_event& what
 
 void lidar_session::on_state(std::size_t lidar, reader_state state,
                              const std::optional<g4lidar::error>& why) {
-  const bool is_bad = why && is_problem(*why);
+  const auto failed = why ? service_->failure_of(lidar) : std::nullopt;
+  const bool is_bad = failed.has_value();
   const std::string text =
-      named(lidar, std::string(name_of(state)) + (is_bad ? ": " + why->message() : ""));
+      named(lidar, std::string(name_of(state)) + (is_bad ? ": " + failed->message() : ""));
   const rclcpp::Logger logger = node_.get_logger();
   if (is_bad && state == reader_state::ended)
     RCLCPP_ERROR(logger, "%s", text.c_str());

@@ -20,9 +20,6 @@
 
 namespace g4lidar_ros {
 
-/// Whether a source is a file.
-[[nodiscard]] bool is_file(const std::string& source);
-
 /// What does not change while lidars are open.
 struct session_options {
   std::vector<g4lidar::service_lidar> lidars;  ///< At least one.
@@ -62,7 +59,7 @@ class lidar_session final : private g4lidar::service_sink {
   void restart_file();
 
   /// Whether no scans follow.
-  [[nodiscard]] bool has_ended() const;
+  [[nodiscard]] bool has_ended() const { return service_->has_ended(); }
   /// Why all lidars have ended, if that is an error; not at the end of a file.
   [[nodiscard]] std::optional<g4lidar::error> failure() const;
   [[nodiscard]] g4lidar::lidar_service& service() noexcept { return *service_; }
@@ -88,8 +85,6 @@ class lidar_session final : private g4lidar::service_sink {
   /// Whether `condition(lidar, state)` is true of each lidar.
   template <class Condition>
   [[nodiscard]] bool is_each(Condition condition) const;
-  /// Not the end of a file, or that of the program.
-  [[nodiscard]] bool is_problem(const g4lidar::error& why) const;
 
   rclcpp_lifecycle::LifecycleNode& node_;
   lidar_topics& topics_;

@@ -27,6 +27,7 @@ node_diagnostics::node_diagnostics(rclcpp_lifecycle::LifecycleNode& node)
     : updater_(with_full_name(node)) {
   updater_.setHardwareID("none");
   std::vector<std::string> sources = node.get_parameter("sources").as_string_array();
+  std::erase(sources, "");  // as node_parameters
   sources.resize(std::max<std::size_t>(1, sources.size()));
   for (std::size_t i = 0; i < sources.size(); ++i) {
     const std::string name = sources[i].substr(0, sources[i].find('='));

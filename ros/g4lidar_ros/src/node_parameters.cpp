@@ -184,7 +184,7 @@ std::vector<g4lidar::service_lidar> node_parameters::lidars() const {
   made.front().options.device = text("source");
   for (std::size_t i = 0; i < sources.size(); ++i) {
     std::tie(made[i].name, made[i].options.device) = sources[i];
-    if (is_file(made[i].options.device))
+    if (g4lidar::names_file(made[i].options.device))
       throw std::invalid_argument("sources: a file cannot be merged, as it has its own clock");
   }
   const bool is_single = !text("source").empty() || !text("mount").empty() || sources.size() == 1;
@@ -232,7 +232,7 @@ session_options node_parameters::for_session() const {
     if (const auto wrong = g4lidar::problem_with(each.options))
       throw std::invalid_argument(wrong->message());
     // Files of parameters have settings for every source.
-    if (is_file(each.options.device)) each.settings.clear();
+    if (g4lidar::names_file(each.options.device)) each.settings.clear();
     each.options = g4lidar::usable_options(each.options);
   }
   return made;

@@ -9,18 +9,6 @@
 namespace g4lidar {
 namespace {
 
-/// For a recording of raw bytes: how the points that follow are made.
-recorded_event event_of(recorded_event::kind what, std::int64_t now_ns, connection& from,
-                        std::uint32_t sample_rate_hz, std::optional<zero_angle> zero, bool counts) {
-  return {.what = what,
-          .baud = from.on().baud(),
-          .sample_rate_hz = sample_rate_hz,
-          .time_ns = now_ns,
-          .name = from.name(),
-          .zero = zero,
-          .counts_times = counts};
-}
-
 /// Whether the event happened when this much of the read had been processed.
 bool is_here(const recorded_event& what, const event_reader& input) noexcept {
   switch (what.what) {
@@ -32,9 +20,14 @@ bool is_here(const recorded_event& what, const event_reader& input) noexcept {
     case recorded_event::kind::closed:
     case recorded_event::kind::gap:
       return false;  // after the complete read
-    default:
-      return true;  // the place does not matter
+    case recorded_event::kind::sent:
+    case recorded_event::kind::state:
+    case recorded_event::kind::odometry:
+    case recorded_event::kind::dtr_low:
+    case recorded_event::kind::dtr_high:
+      break;
   }
+  return true;  // the place does not matter
 }
 
 }  // namespace
@@ -42,9 +35,9 @@ bool is_here(const recorded_event& what, const event_reader& input) noexcept {
 replay_player::replay_player(parts& of, const lidar_options& options)
     : scan_source(of, options),
       stated_{.identity = identity_reader(*options.model, true)},
-      samples_{first_rate_hz(*options.model),
-               options.raw_sample_rate_hz.value_or(first_rate_hz(*options.model)),
-               options.counts_times} {}
+      samples_{options.raw_sample_rate_hz.value_or(first_rate_hz(*options.model)),
+               options.raw_sample_rate_hz.has_value(),
+               options.counts_times || options.raw_sample_rate_hz.has_value()} {}
 
 result<void> replay_player::open() {
   if (auto opened = connection_.open(); !opened) return opened;
@@ -54,8 +47,8 @@ result<void> replay_player::open() {
   if (source_ == nullptr) {
     stated_.recorder = hook;
     source_ = file_;  // the seams of raw bytes in a loop
-    samples_.counts_times = samples_.counts_times || file_ != nullptr;
-    if (samples_.counts_times) samples_.rate_hz = samples_.raw_rate_hz;
+    const std::uint32_t counted_hz = file_ ? file_->items().source().counted_hz() : 0;
+    if (counted_hz > 0) samples_ = {counted_hz, true, true};
   }
   if (file_ != nullptr) file_->controls().when_moved([this] { follow_seek(); });
   receiver_.reset(0, 0, now_ns());
@@ -74,8 +67,7 @@ result<void> replay_player::start() {
   stage_ = stage::playing;
   const auto zero = pipeline_.zero().angle();  // the user knows it
   if (zero || samples_.counts_times) {
-    stated_.record(event_of(recorded_event::kind::begun, now_ns(), connection_, samples_.rate_hz,
-                            zero, samples_.counts_times));
+    record(recorded_event::kind::begun, zero);
   }
   spin_up_.forget();
   begin_spin_up();
@@ -171,7 +163,7 @@ void replay_player::follow_samples() {
   const model* const found = recognised_.follow(seen, baud, now.model->link == link_kind::two_way);
   if (found == nullptr) return;
   stated_.follow(*found);
-  if (!samples_.counts_times) samples_.rate_hz = first_rate_hz(*found);
+  if (!samples_.is_given) samples_.rate_hz = first_rate_hz(*found);
   pipeline_.become(*found, baud);
   if (samples_.counts_times) pipeline_.begin(samples_.rate_hz, true);
   report(lidar_event::kind::other_number);
@@ -210,8 +202,7 @@ bool replay_player::parse_bytes() {
         if (is_other) report(lidar_event::kind::other_number);
       }
       if (const auto zero = pipeline_.zero().angle(); zero != stated_.recorded_zero) {
-        stated_.record(event_of(recorded_event::kind::state, now_ns(), connection_,
-                                samples_.rate_hz, zero, samples_.counts_times));
+        record(recorded_event::kind::state, zero);
       }
       const bool makes_points = pipeline_.delivers() && std::holds_alternative<packet_view>(*found);
       const bool is_first = makes_points && !std::exchange(stated_.is_zero_judged, true);
@@ -223,9 +214,17 @@ bool replay_player::parse_bytes() {
   return true;
 }
 
-void replay_player::statements::record(recorded_event made) {
-  recorded_zero = made.zero;
-  if (recorder != nullptr) recorder->event(made);
+/// For a recording of raw bytes: how the points that follow are made.
+void replay_player::record(recorded_event::kind what, std::optional<zero_angle> zero) {
+  stated_.recorded_zero = zero;
+  if (stated_.recorder == nullptr) return;
+  stated_.recorder->event({.what = what,
+                           .baud = connection_.on().baud(),
+                           .sample_rate_hz = samples_.rate_hz,
+                           .time_ns = now_ns(),
+                           .name = connection_.name(),
+                           .zero = zero,
+                           .counts_times = samples_.counts_times});
 }
 
 void replay_player::follow_delivery() {

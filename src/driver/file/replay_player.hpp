@@ -59,7 +59,7 @@ class replay_player final : public scan_source {
   /// Of the points that follow.
   struct sampling {
     std::uint32_t rate_hz;
-    std::uint32_t raw_rate_hz;  ///< Of raw bytes whose times are counted.
+    bool is_given;  ///< It is not that of the model.
     bool counts_times;
   };
 
@@ -70,7 +70,6 @@ class replay_player final : public scan_source {
     std::optional<zero_angle> recorded_zero{};  ///< By `recorder`.
     bool is_zero_judged = false;                ///< Whether it is known when points begin.
 
-    void record(recorded_event made);
     void follow(const model& which) noexcept {
       identity = identity_reader(which, true);
       is_zero_judged = false;
@@ -95,6 +94,7 @@ class replay_player final : public scan_source {
   void follow_seek();
   void follow_delivery();
   void report_long_pause();
+  void record(recorded_event::kind what, std::optional<zero_angle> zero);
   [[nodiscard]] bool play_events(bool all);
   void play(const recorded_event& what);
 

@@ -42,6 +42,8 @@ class item_source {
   [[nodiscard]] virtual const g4lidar::model& begun_as() const noexcept { return model(); }
   /// Null: raw bytes, which have neither events nor times of a device.
   [[nodiscard]] virtual const recording_reader* recording() const noexcept { return nullptr; }
+  /// The samples per second by which times of raw bytes are counted; 0: they were recorded.
+  [[nodiscard]] virtual std::uint32_t counted_hz() const noexcept { return 0; }
 
  protected:
   item_source() = default;

@@ -38,7 +38,7 @@ constexpr std::size_t longest_piece = 16'384;
 
 /// A recording must be a file with a name; its bytes would be parsed as noise.
 tl::unexpected<error> a_recording(task doing) noexcept {
-  return failure(doing, problem::bad_file, "a recording in a pipe");
+  return failure(doing, problem::bad_file, "a recording in a pipe or in standard input");
 }
 
 /// A pipe, a terminal or a device: bytes arrive when they can be read. Nothing answers.
@@ -175,6 +175,9 @@ class counted_items final : public item_source {
         is_cancelled_(std::move(is_cancelled)),
         model_(&which) {}
 
+  [[nodiscard]] std::uint32_t counted_hz() const noexcept override {
+    return static_cast<std::uint32_t>(rate_hz_);
+  }
   [[nodiscard]] result<std::optional<recorded_item>> next() noexcept override {
     while (true) {
       auto piece = find_piece();

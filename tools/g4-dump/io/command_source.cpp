@@ -12,9 +12,7 @@
 namespace g4_tool {
 
 void refuse_files(const common_options& options, task doing) {
-  const source_kind kind = kind_of_source(options.source);
-  if (kind == source_kind::device || kind == source_kind::simulated) return;
-  throw failure(error(doing, problem::read_only, options.source));
+  if (names_file(options.source)) throw failure(error(doing, problem::read_only, options.source));
 }
 
 void refuse_listening(const common_options& options) {

@@ -3,6 +3,7 @@
 
 #include <span>
 #include <string>
+#include <utility>
 
 #include "cli/exit_code.hpp"
 #include "cli/logger.hpp"
@@ -31,7 +32,7 @@ class point_run {
     to_.use_model(g4_model);  // until it is opened
     opened_source source(common_, source_options());
     if (is_raw()) to_.open(has_end());  // it may be a pipe that its reader opens later
-    to_.use_model(source.model());
+    to_.use_model(source.model());      // if nothing comes
     try {
       read(source);
     } catch (const failure&) {  // what came before it is good
@@ -48,9 +49,7 @@ class point_run {
   }
 
  private:
-  [[nodiscard]] bool is_live() const {
-    return kind_ == source_kind::device || kind_ == source_kind::simulated;
-  }
+  [[nodiscard]] bool is_live() const { return !names_file(common_.source); }
   [[nodiscard]] bool is_raw() const { return kind_ == source_kind::raw_bytes; }
   [[nodiscard]] bool has_end() const {
     return kind_ == source_kind::recording ||
@@ -77,14 +76,25 @@ class point_run {
   void read(opened_source& source) {
     read_sink sink;
     if (to_.writer().takes_scans()) {
-      sink.scan = [this](const scan& found) { return std::uint64_t{to_.write(found) ? 0U : 1U}; };
+      sink.scan = [&](const scan& found) {
+        follow_model(source);
+        return std::uint64_t{to_.write(found) ? 0U : 1U};
+      };
     } else {
-      sink.points = [this](std::span<const point> found) { to_.write(found); };
+      sink.points = [&](std::span<const point> found) {
+        follow_model(source);
+        to_.write(found);
+      };
     }
     sink.is_done = [this] { return to_.writer().is_done(); };
     common_options ending = common_;
     if (has_end()) ending.duration = ending.idle = std::chrono::nanoseconds(0);
     read_source(source, ending, sink, to_.out());
+  }
+
+  /// The first bytes of a pipe may come long after it was opened, and show another model than a G4.
+  void follow_model(opened_source& source) {
+    if (!std::exchange(has_begun_, true)) to_.use_model(source.model());
   }
 
   void report(opened_source& source) const {
@@ -116,6 +126,7 @@ class point_run {
   const common_options& common_;
   source_kind kind_ = kind_of_source(common_.source);
   point_output to_;
+  bool has_begun_ = false;  // to write
 };
 
 }  // namespace

@@ -21,12 +21,6 @@ constexpr auto pulse_time = 100ms;
 constexpr auto flush_time = 50ms;
 constexpr std::uint64_t most_without_s = 10;
 
-/// Whether it is a file or a pipe.
-bool is_input(const std::string& source) {
-  const source_kind kind = kind_of_source(source);
-  return kind == source_kind::recording || kind == source_kind::raw_bytes;
-}
-
 class read_loop {
  public:
   read_loop(opened_source& source, const common_options& options, const read_sink& sink,
@@ -39,9 +33,11 @@ class read_loop {
       const bool got = read();
       report_events(lidar_);
       if (ended_) return;
-      if (got) {
+      if (const std::uint64_t bytes = lidar_.counts().bytes; bytes != bytes_ || got) {
+        bytes_ = bytes;
         limits_.restart_idle();
-      } else {
+      }
+      if (!got) {
         flush_if_due();
         refuse_endless();
         wait();
@@ -120,7 +116,7 @@ class read_loop {
   clock::time_point flushed_ = clock::now();
   bool is_terminal_ = out_.is_terminal();
   progress_bar bar_{source_.size(), sink_.with_bar && !is_terminal_};
-  bool is_live_ = !is_input(options_.source);
+  bool is_live_ = !names_file(options_.source);
   std::uint64_t records_ = 0;
   struct {
     std::uint64_t scans = 0;
@@ -166,7 +162,7 @@ void read_source(opened_source& source, const common_options& options, const rea
   read_loop(source, options, sink, out).run();
   static_cast<void>(lidar.stop());  // the data is valid even if stopping fails
   const bool has_enough = sink.is_done && sink.is_done();
-  if (is_input(options.source) && !has_enough) take_rest(lidar, sink);
+  if (names_file(options.source) && !has_enough) take_rest(lidar, sink);
   report_events(lidar);
 }
 

@@ -103,8 +103,7 @@ class recorder {
 
   /// Records the information and settings of the device; recorded() does that for a recording.
   void describe() {
-    const source_kind kind = kind_of_source(job_.common.source);
-    if (kind == source_kind::recording || kind == source_kind::raw_bytes) return;
+    if (names_file(job_.common.source)) return;
     g4lidar::lidar& lidar = source_->lidar();
     recorded_device known;
     known.information = lidar.information();

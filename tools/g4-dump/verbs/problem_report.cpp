@@ -41,11 +41,6 @@ std::string recording_beside(const std::string& text) {
   return recording;
 }
 
-bool is_file(const std::string& source) {
-  const source_kind kind = kind_of_source(source);
-  return kind == source_kind::recording || kind == source_kind::raw_bytes;
-}
-
 /// The rest of the first line of `file` that begins with `name`; empty if there is none.
 std::string line_after(const char* file, std::string_view name) {
   std::ifstream in(file);
@@ -90,7 +85,7 @@ void attempt(output& out, Write write) {
 problem_report::problem_report(const common_options& source, const std::string& path)
     : source_(source),
       text_(text_path(path)),
-      is_recorded_(!is_file(source.source)),
+      is_recorded_(!names_file(source.source)),
       recording_(is_recorded_ ? recording_beside(path) : path_of_source(source.source)) {
   text_.write(fmt::format(
       "A report of g4-dump doctor about a problem.\n\n"

@@ -81,11 +81,6 @@ std::string as_row(const report_line& line) {
       now.reconnects);
 }
 
-bool is_file(const std::string& source) {
-  const source_kind kind = kind_of_source(source);
-  return kind == source_kind::recording || kind == source_kind::raw_bytes;
-}
-
 /// Seconds since the beginning; of a file by the times of its points.
 class source_clock {
  public:
@@ -116,7 +111,7 @@ common_options readable(const stats_options& options) {
     if (!how.source.starts_with("file:")) how.source.insert(0, "file:");
   }
   const bool ends = how.duration.count() > 0 || how.count > 0;
-  if (!options.is_watch() && !ends && !is_file(how.source)) how.duration = usual_duration;
+  if (!options.is_watch() && !ends && !names_file(how.source)) how.duration = usual_duration;
   return how;
 }
 
@@ -125,7 +120,7 @@ int stats(const stats_options& options) {
   output out(how.output);
   opened_source source(how, {.partial_scans = true});  // for their times
   if (options.is_watch() && !how.json) out.write(columns);
-  source_clock time(is_file(how.source));
+  source_clock time(names_file(how.source));
   report_line last;
   auto next = clock::now() + options.interval;
   std::uint64_t lines = 0;

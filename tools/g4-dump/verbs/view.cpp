@@ -100,7 +100,7 @@ class viewer {
     const auto until =
         clock::now() + (job_.common->duration > 0ns ? job_.common->duration : longest_wait);
     while (!newest_.is_steady() && interrupt() == 0 && clock::now() < until &&
-           service_->status(0).state != reader_state::ended) {
+           !service_->has_ended()) {
       newest_.wait(std::min(until, clock::now() + 100ms), interrupt_handle());
     }
     update();

@@ -10,6 +10,7 @@
 #include <string>
 #include <utility>
 
+#include "cli/logger.hpp"
 #include "g4lidar/lidar_service.hpp"
 #include "g4lidar/owned_scan.hpp"
 #include "wake_descriptor.hpp"
@@ -22,6 +23,9 @@ class newest_scan final : public service_sink {
   explicit newest_scan(bool keeps) : keeps_(keeps) {}
 
   [[nodiscard]] service_demand wanted() const override { return {.kept = true}; }
+  void on_open(std::size_t /*lidar*/, g4lidar::lidar& device) override {
+    logger::verbose("opened " + std::string(device.name()) + '\n');
+  }
   void on_scan(const service_scan& made) override {
     {
       const scan& found = made.kept;

@@ -34,11 +34,6 @@ std::string list_of(const std::vector<named_source>& lidars) {
   return made;
 }
 
-bool has_own_clock(const named_source& each) {
-  const source_kind kind = kind_of_source(each.source);
-  return kind == source_kind::recording || kind == source_kind::raw_bytes;
-}
-
 }  // namespace
 
 bool is_lidar_name(std::string_view word) noexcept {
@@ -84,7 +79,7 @@ std::vector<named_source> named_sources(const std::vector<std::string>& words,
   if (made.size() > 1 && names.contains("")) {
     throw bad_value("several lidars need names: front=/dev/ttyUSB0");
   }
-  if (merges && std::ranges::any_of(made, has_own_clock)) {
+  if (merges && std::ranges::any_of(made, names_file, &named_source::source)) {
     throw bad_value("--merge joins lidars; a file has a clock of its own");
   }
   for (const auto& [name, place] : mounts) {

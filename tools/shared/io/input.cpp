@@ -143,7 +143,7 @@ std::string input::first_line(const common_options& options) {
 
 void input::pump(output& out, const byte_sink& sink, const common_options& options) {
   constexpr std::size_t first_piece = 16'384;
-  progress_bar bar(size_, sink.with_bar && !out.is_terminal());
+  progress_bar bar(size_, !out.is_terminal());
   std::vector<std::uint8_t> buffer(std::size_t{256} * 1024);
   time_limits limits(options.duration, options.idle);
   const auto is_done = [&] { return out.is_closed() || (sink.is_done && sink.is_done()); };

@@ -28,7 +28,6 @@ namespace g4_tool {
 struct byte_sink {
   std::function<void(std::span<const std::uint8_t>)> take;
   std::function<bool()> is_done{};  ///< If set: called after each piece.
-  bool with_bar = true;             ///< Shows the progress through a file.
 };
 
 /// The failure of a file that could not be opened, by its errno: why, and what to do.

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "service_source.hpp"
 
+#include <cstdint>
+#include <exception>
 #include <utility>
 
 #include "cli/logger.hpp"
 #include "cli/rows.hpp"
+#include "g4lidar/source.hpp"
 #include "input.hpp"
 #include "output.hpp"
 #include "shape_files.hpp"
@@ -17,11 +20,7 @@ service_lidar service_lidar_of(const common_options& options, const lidar_option
 }
 
 service_options service_options_of(const common_options& options) {
-  service_options made{.mask = mask_in(options.mask), .deskew = options.deskew};
-  made.filters = {.filter = options.filter,
-                  .ignored = options.ignored,
-                  .marks = options.marks,
-                  .grid = options.grid};
+  service_options made{.filters = options, .mask = mask_in(options.mask), .deskew = options.deskew};
   made.filters.filter.in = options.frame;
   return made;
 }
@@ -29,19 +28,24 @@ service_options service_options_of(const common_options& options) {
 std::unique_ptr<lidar_service> make_service(std::vector<service_lidar> lidars,
                                             service_options options,
                                             const std::vector<service_output>& outputs) {
-  if (lidars.size() > 32) throw bad_value("--merge joins at most 32 lidars");
-  return value_of(lidar_service::make(std::move(lidars), std::move(options), outputs));
+  auto made = lidar_service::make(std::move(lidars), std::move(options), outputs);
+  if (!made && made.error() == problem::bad_option)
+    throw bad_value(std::string(made.error().subject()));
+  return value_of(std::move(made));
 }
 
 std::optional<failure> failure_of(const common_options& options, const std::optional<error>& why,
                                   const lidar_counts& counts) {
   if (!why || *why == problem::cancelled) return std::nullopt;
-  const source_kind kind = kind_of_source(options.source);
-  const bool is_file = kind == source_kind::recording || kind == source_kind::raw_bytes;
-  if (*why != problem::end_of_input || !is_file) return failure_of(options, *why);
+  if (*why != problem::end_of_input || !names_file(options.source))
+    return failure_of(options, *why);
   if (counts.stream.packets > 0) return std::nullopt;
-  return without_packets(counts.stream, counts.bytes, beginning_of(path_of_source(options.source)),
-                         in_quotes(options.source));
+  std::vector<std::uint8_t> beginning;
+  try {
+    beginning = beginning_of(path_of_source(options.source));
+  } catch (const std::exception&) {  // it was removed, or a signal came: its counts are known
+  }
+  return without_packets(counts.stream, counts.bytes, beginning, in_quotes(options.source));
 }
 
 std::string why_of(const common_options& options, const std::optional<error>& why,

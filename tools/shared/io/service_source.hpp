@@ -25,7 +25,7 @@ namespace g4_tool {
     std::vector<service_lidar> lidars, service_options options,
     const std::vector<service_output>& outputs);
 
-/// Of which error, if it is one, a reader states `why`: nothing at the end of a file with packets, and after a signal.
+/// reader_status::why as a failure; nothing at the end of a file with packets, and after a signal.
 [[nodiscard]] std::optional<failure> failure_of(const common_options& options,
                                                 const std::optional<error>& why,
                                                 const lidar_counts& counts);
@@ -36,7 +36,7 @@ namespace g4_tool {
 [[nodiscard]] std::optional<failure> final_failure_of(const common_options& options,
                                                       const lidar_service& service,
                                                       std::size_t lidar = 0);
-/// That of the first lidar if all have one: what works is shown. `options_of`: of a lidar.
+/// The failure of the first lidar, if all lidars have failed. `options_of`: of a lidar.
 template <class OptionsOf>
 [[nodiscard]] std::optional<failure> failure_of_all(const lidar_service& service,
                                                     OptionsOf options_of) {

@@ -38,9 +38,8 @@ void refuse_zero_angle(const common_options& options, std::string_view why);
 /// bytes show is logged when they are opened.
 [[nodiscard]] lidar_options options_for(const common_options& options, lidar_options how);
 /// What sends the bytes of the source: that of --model or of the name, or what a file shows. Raw bytes that
-/// show it are reported by report_model(), or stored in `shown` and not reported. Null: not known before the first
-/// bytes of a pipe are read, which input::recognise() does, or before a device is opened, which searches it: then it is
-/// opened_source::model(). Throws a failure, also for options that the source cannot use, and a bad_value if a recording is of another model than that of --model.
+/// show it are reported by report_model(), or stored in `shown` and not reported. Null: not known before a pipe or
+/// a device is opened; then it is opened_source::model(). Throws a failure, also for options that the source cannot use, and a bad_value if a recording is of another model than that of --model.
 [[nodiscard]] const g4lidar::model* model_of(const common_options& options,
                                              std::optional<recognised_model>* shown = nullptr);
 /// Logs what raw bytes were recognised as, in a line, unless it is a G4 for certain: which models also send
