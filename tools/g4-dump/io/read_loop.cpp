@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "cli/exit_code.hpp"
 #include "cli/logger.hpp"
@@ -33,10 +34,7 @@ class read_loop {
       const bool got = read();
       report_events(lidar_);
       if (ended_) return;
-      if (const std::uint64_t bytes = lidar_.counts().bytes; bytes != bytes_ || got) {
-        bytes_ = bytes;
-        limits_.restart_idle();
-      }
+      if (got || has_new_bytes()) limits_.restart_idle();
       if (!got) {
         flush_if_due();
         refuse_endless();
@@ -55,6 +53,12 @@ class read_loop {
   [[nodiscard]] bool has_enough() const {
     if (sink_.is_done) return sink_.is_done();
     return options_.count > 0 && records_ >= options_.count;
+  }
+
+  /// Bytes that make no point yet.
+  bool has_new_bytes() {
+    const std::uint64_t before = std::exchange(bytes_, lidar_.counts().bytes);
+    return before != bytes_;
   }
 
   void flush_if_due() {
@@ -118,6 +122,7 @@ class read_loop {
   progress_bar bar_{source_.size(), sink_.with_bar && !is_terminal_};
   bool is_live_ = !names_file(options_.source);
   std::uint64_t records_ = 0;
+  std::uint64_t bytes_ = 0;
   struct {
     std::uint64_t scans = 0;
     std::uint64_t records = 0;
