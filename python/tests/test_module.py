@@ -27,6 +27,14 @@ def test_everything_public_has_a_docstring() -> None:
     assert joined == []
 
 
+def test_each_keyword_of_open_is_a_row_of_the_options() -> None:
+    (signature, *_), *_ = g4lidar.open.__nb_signature__  # type: ignore[attr-defined]
+    keywords = set(re.findall(r"(\w+): ", signature.split("*,")[1]))
+    rows = set(re.findall(r"^- `(\w+)`:", g4lidar.open.__doc__ or "", re.MULTILINE))
+    assert rows - keywords == set()
+    assert keywords - rows == {"device_wait", "overwrite", "record", "speed"}
+
+
 def test_the_view_has_twenty_lines() -> None:
     lines = [line for line in (resources.files(g4lidar) / "view.py").read_text().splitlines() if line.strip()]
     words = [line for line in lines if line.lstrip().startswith(("#", '"""'))]
