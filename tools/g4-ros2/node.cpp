@@ -56,7 +56,6 @@ class node {
       bus_.clear();
       if (const auto now = clock::now(); now >= network_due_) {
         bus_.update();
-        if (announcement_) announcement_->update();
         network_due_ = now + network_interval;
       }
       if (run_) run_->update();

@@ -37,8 +37,8 @@ struct frame_names {
   std::string odometry = "odom";
 };
 
-/// The message that announces the node: that of releases up to Humble, or from Iron on; automatic: by what is in the
-/// domain.
+/// The message that announces the node: that of releases up to Humble, or from Iron on; automatic: by
+/// ROS_DISTRO.
 enum class announced_form : unsigned char { automatic, none, humble, iron };
 
 /// The network and the quality of service.

@@ -150,7 +150,6 @@ void bus::open() {
   constexpr std::string_view user_data = "enclave=/;";
   const qos with_enclave(dds_create_qos(), dds_delete_qos);
   dds_qset_userdata(with_enclave.get(), user_data.data(), user_data.size());
-  dds_qset_entity_name(with_enclave.get(), participant_name);
   const dds_entity_t made =
       domain_ ? dds_create_participant(wanted_.domain, with_enclave.get(), nullptr)
               : DDS_RETCODE_ERROR;

@@ -19,9 +19,6 @@ namespace g4_tool::dds {
 
 class bus;
 
-/// The name of the participant of each program like this one in its domain.
-constexpr const char* participant_name = "g4-ros2";
-
 /// A publisher or subscription, which is opened each time the domain is created. Constructed and
 /// destroyed in the thread of the bus.
 class endpoint {
