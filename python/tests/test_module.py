@@ -32,7 +32,7 @@ def test_each_keyword_of_open_is_a_row_of_the_options() -> None:
     keywords = set(re.findall(r"(\w+): ", signature.split("*,")[1]))
     rows = set(re.findall(r"^- `(\w+)`:", g4lidar.open.__doc__ or "", re.MULTILINE))
     assert rows - keywords == set()
-    assert keywords - rows == {"device_wait", "overwrite", "record", "speed"}
+    assert keywords - rows == {"device_wait", "overwrite", "record"}
 
 
 def test_the_view_has_twenty_lines() -> None:

@@ -20,6 +20,13 @@ constexpr double other_model_tolerance = 0.06;
 /// How far a number of samples per revolution may be beyond those at the limits of rate and frequency.
 constexpr double revolution_tolerance = 0.1;
 
+/// How far a rate may be wrong because bytes were late by the longest time without any, as a fraction.
+double doubt_of(const stream_tally& measured) {
+  const double silence_s = static_cast<double>(measured.arrivals.longest_silence_ns()) * 1e-9;
+  const double samples = static_cast<double>(measured.samples);
+  return samples > 0.0 ? silence_s * measured.sample_rate_hz() / samples : 0.0;
+}
+
 /// Whether the rate is not that of the manual, but devices of the model have it. Reports that.
 bool is_rate_of_owners(stage_report& rate, double rate_hz, const model& wanted) {
   const double manual_hz = wanted.rates.nominal_hz;
@@ -34,13 +41,13 @@ bool is_rate_of_owners(stage_report& rate, double rate_hz, const model& wanted) 
 
 /// Bytes without device information: a speed that no lidar like `wanted` has is that of another model.
 void find_other_speed(stage_report& rate, double rate_hz, double samples_per_revolution,
-                      const model& wanted) {
+                      const model& wanted, double doubt = 0.0) {
   std::vector<double> rates;
   for (const sample_rate_entry& each : wanted.rates.entries) {
     if (each.hz != 0) rates.push_back(each.hz);
   }
-  const auto is_near = [rate_hz](double nominal) {
-    return std::abs(rate_hz - nominal) <= other_model_tolerance * nominal;
+  const auto is_near = [rate_hz, doubt](double nominal) {
+    return std::abs(rate_hz - nominal) <= (other_model_tolerance + doubt) * nominal;
   };
   const bool is_known_rate = rate_hz <= 0.0 || std::ranges::any_of(rates, is_near) ||
                              is_rate_of_owners(rate, rate_hz, wanted);
@@ -90,9 +97,11 @@ void report_rate(stage_log& log, const stream_statistics& measured, const device
                  const model& wanted) {
   const double frequency_hz = measured.tally().frequency_hz();
   const double rate_hz = measured.tally().sample_rate_hz();
-  // A computer that is busy again and again makes arrivals late that look like another rate. So do whole revolutions
+  // Late arrivals look like another rate: of a computer that is busy, or when this was recorded. So do whole revolutions
   // that are lost.
-  const bool is_certain = !is_host_busy(measured) && !is_mostly_damaged(measured);
+  const bool is_certain = !is_host_busy(measured) && measured.tally().arrivals.stalls() == 0 &&
+                          !is_mostly_damaged(measured);
+  const double doubt = doubt_of(measured.tally());
   stage_report rate{.stage = diagnostic_stage::rate};
   const double reported_hz = true_frequency_dhz(wanted, measured.tally().reported_dhz()) / 10.0;
   if (reported_hz > 0.0) rate.add("reported_hz", reported_hz);
@@ -112,17 +121,18 @@ void report_rate(stage_log& log, const stream_statistics& measured, const device
   if (known.frequency) {
     const double set_hz = known.frequency->chz / 100.0;
     rate.add("set_hz", set_hz);
-    const bool is_off = std::abs(frequency_hz - set_hz) > frequency_tolerance * set_hz;
+    const bool is_off = std::abs(frequency_hz - set_hz) > (frequency_tolerance + doubt) * set_hz;
     if (is_off && is_certain && measured.was_steady()) rate.find(diagnosis::frequency_off);
   }
   rate.add("sample_rate_hz", rate_hz);
   if (is_unknown_model) {
-    find_other_speed(rate, rate_hz, 1.0 / measured.tally().turns_per_sample(), wanted);
+    find_other_speed(rate, rate_hz, 1.0 / measured.tally().turns_per_sample(), wanted, doubt);
   }
   if (const double nominal_hz = nominal_rate_hz(known, rate_hz, wanted); nominal_hz > 0.0) {
     rate.add("expected_sample_rate_hz", nominal_hz);
-    const bool is_off = std::abs(rate_hz - nominal_hz) > sample_rate_tolerance * nominal_hz &&
-                        !is_rate_of_owners(rate, rate_hz, wanted);
+    const bool is_off =
+        std::abs(rate_hz - nominal_hz) > (sample_rate_tolerance + doubt) * nominal_hz &&
+        !is_rate_of_owners(rate, rate_hz, wanted);
     if (is_off && is_certain) rate.find(diagnosis::sample_rate_off);
   }
   if (const std::string how = speed_without_commands(wanted); !how.empty()) {

@@ -83,7 +83,7 @@ TEST_F(ServiceMerging, WithoutOneOfThem_TheOtherIsGiven_AndAWarning) {
   ASSERT_TRUE(wait_for_scan(true));
   const auto wall = std::chrono::system_clock::now().time_since_epoch();
   ASSERT_TRUE(wait_for_scan(false));
-  EXPECT_EQ(service->status(0).state, reader_state::lost);
+  ASSERT_TRUE(comes_true([&] { return service->status(0).state == reader_state::lost; }));
   EXPECT_EQ(service->status(1).state, reader_state::running);
   const auto found = service->motion_diagnosis();
   ASSERT_EQ(found.size(), 1U);
