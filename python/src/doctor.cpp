@@ -72,7 +72,7 @@ std::vector<stage_report> examine(const std::variant<path_text, simulator*>& dev
       if (raised) return;
       call([&] {
         try {
-          (*on_stage)(report);
+          in_python([&] { (*on_stage)(report); });
         } catch (nb::python_error& error) {
           raised.emplace(std::move(error));
         }

@@ -3,6 +3,7 @@
 
 #include "g4lidar/export/printable.hpp"
 #include "g4lidar/lidar_options.hpp"
+#include "gil.hpp"
 
 namespace g4lidar::python {
 namespace {
@@ -24,21 +25,28 @@ std::string class_name(std::string_view problem) {
 
 nb::str text(std::string_view from) { return nb::str(from.data(), from.size()); }
 
+/// Raises an object of a class of g4lidar.errors, which is made in Python.
+template <class... Arguments>
+[[noreturn]] void raise_as(const std::string& name, const Arguments&... arguments) {
+  in_python([&] {
+    const nb::object kind = nb::module_::import_("g4lidar.errors").attr(name.c_str());
+    const nb::object made = kind(arguments...);
+    PyErr_SetObject(kind.ptr(), made.ptr());
+  });
+  throw nb::python_error();
+}
+
 }  // namespace
 
 void raise(const error& why) {
   // A handler of a signal raised, which ended the call.
   if (why == problem::cancelled && PyErr_Occurred() != nullptr) throw nb::python_error();
   const std::string name = class_name(name_of(why.code()));
-  const nb::object kind = nb::module_::import_("g4lidar.errors").attr(name.c_str());
   const std::string message = why.message();
   using namespace nb::literals;
-  const nb::object made =
-      kind(text(message), "doing"_a = text(name_of(why.doing())), "subject"_a = text(why.subject()),
-           "system_errno"_a = why.system_errno(), "advice"_a = text(why.advice()),
-           "is_fatal"_a = why.is_fatal());
-  PyErr_SetObject(kind.ptr(), made.ptr());
-  throw nb::python_error();
+  raise_as(name, text(message), "doing"_a = text(name_of(why.doing())),
+           "subject"_a = text(why.subject()), "system_errno"_a = why.system_errno(),
+           "advice"_a = text(why.advice()), "is_fatal"_a = why.is_fatal());
 }
 
 const model* model_of(const std::optional<std::string>& word) {
@@ -60,13 +68,10 @@ std::vector<std::string_view> words_of(std::span<const model* const> which) {
 }
 
 void raise_bad_option(const std::string& sentence) {
-  const nb::object kind = nb::module_::import_("g4lidar.errors").attr("BadOption");
   const error like(task::opening, problem::bad_option, sentence);
   using namespace nb::literals;
-  const nb::object made = kind(text(sentence), "doing"_a = text(name_of(like.doing())),
-                               "advice"_a = text(like.advice()));
-  PyErr_SetObject(kind.ptr(), made.ptr());
-  throw nb::python_error();
+  raise_as("BadOption", text(sentence), "doing"_a = text(name_of(like.doing())),
+           "advice"_a = text(like.advice()));
 }
 
 void bind_errors(nb::module_& module) {

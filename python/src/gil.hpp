@@ -3,11 +3,25 @@
 #pragma once
 
 #include <Python.h>
+#include <cxxabi.h>
+#include <unistd.h>
 
 #include <functional>
 #include <mutex>
 
 namespace g4lidar::python {
+
+/// Calls what waits for the GIL, or runs code in Python, which gives it to others now and then. Where the interpreter has
+/// ended meanwhile, Python ends the thread by unwinding it, which no function in C++ survives that does not throw or
+/// catches all: the thread stays here instead. Not inline: else these callers end the program.
+template <class Call>
+[[gnu::noinline]] decltype(auto) in_python(const Call& call) {
+  try {
+    return call();
+  } catch (const abi::__forced_unwind&) {
+    while (true) ::pause();
+  }
+}
 
 /// Releases the GIL while it exists. A thread that wants it back when the interpreter has ended waits for ever, as in
 /// Python 3.14; earlier versions end the thread there, which ends the program, because of functions that do not throw.

@@ -12,6 +12,7 @@
 #include <tuple>
 
 #include "context.hpp"
+#include "gil.hpp"
 #include "reading_thread.hpp"
 #include "settings.hpp"
 
@@ -194,7 +195,9 @@ void bind_reading(Class& made) {
       .def(
           "scans_async",
           [](nb::handle self, std::optional<double> timeout, bool newest) {
-            return nb::module_::import_("g4lidar._asyncio").attr("scans")(self, timeout, newest);
+            return in_python([&]() -> nb::object {
+              return nb::module_::import_("g4lidar._asyncio").attr("scans")(self, timeout, newest);
+            });
           },
           "timeout"_a = 2.0, nb::kw_only(), "newest"_a = false,
           nb::sig("def scans_async(self, timeout: float | None = 2.0, *, newest: bool = False) -> "

@@ -18,6 +18,7 @@
 #include "g4lidar/recording/writer.hpp"
 #include "g4lidar/scan_shaper.hpp"
 #include "g4lidar/settings.hpp"
+#include "gil.hpp"
 
 namespace g4lidar::python {
 
@@ -49,7 +50,7 @@ template <>
 struct nanobind::detail::type_caster<g4lidar::python::path_text> {
   NB_TYPE_CASTER(g4lidar::python::path_text, const_name("str | os.PathLike[str]"))
   bool from_python(handle from, std::uint32_t flags, cleanup_list* list) noexcept {
-    const object path = steal(PyOS_FSPath(from.ptr()));
+    const object path = steal(g4lidar::python::in_python([&] { return PyOS_FSPath(from.ptr()); }));
     make_caster<std::string_view> text;
     if (!path.is_valid() || !text.from_python(path, flags, list)) {
       PyErr_Clear();

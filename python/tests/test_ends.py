@@ -9,7 +9,9 @@ RUNNING = {
     "simulator": "simulated.now_ns",
     "decode": "g4lidar.decode(zeros)",
     "open": "g4lidar.open(simulated).close()",
-    "doctor": "g4lidar.doctor(simulated, measuring_time=1)",
+    "doctor": "g4lidar.doctor(simulated, measuring_time=1, on_stage=lambda _: sum(range(1000)))",
+    "error": "g4lidar.open('', model='none')",
+    "path": "g4lidar.open(pathlib.Path('/none'), listen_only=True)",
     "list_ports": "g4lidar.find_lidars()",
 }
 
@@ -17,7 +19,7 @@ RUNNING = {
 @pytest.mark.parametrize("call", RUNNING)
 def test_threads_that_still_run(call: str) -> None:
     program = start_program(f"""
-        import threading, time
+        import pathlib, threading, time
         zeros = bytes(3_000_000)
         simulated = g4lidar.Simulator()
         lidar = g4lidar.open(simulated)
