@@ -4,8 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <cstdint>
-#include <string>
-#include <vector>
 
 #include "g4lidar/sim/device.hpp"
 #include "support/host_side.hpp"
@@ -83,16 +81,6 @@ TEST(SimCommands, Direction) {
   EXPECT_EQ(host.ask(0x08), byte_answer(0));
 }
 
-TEST(SimCommands, ScanFrequency_Steps) {
-  host_side host;
-  EXPECT_EQ(host.ask(0x0D), frequency_answer(700));
-  EXPECT_EQ(host.ask(0x09), frequency_answer(710));
-  EXPECT_EQ(host.ask(0x0B), frequency_answer(810));
-  EXPECT_EQ(host.ask(0x0A), frequency_answer(800));
-  EXPECT_EQ(host.ask(0x0C), frequency_answer(700));
-  EXPECT_EQ(host.ask(0x0D), frequency_answer(700));
-}
-
 TEST(SimCommands, ScanFrequency_HasLimits) {
   for (const sim::at_limit limit : {sim::at_limit::clamp, sim::at_limit::refuse}) {
     sim::device_options options;
@@ -113,15 +101,6 @@ TEST(SimCommands, ConstantFrequency) {
   EXPECT_EQ(host.device.settings().constancy, constant_frequency::off);
   EXPECT_EQ(host.ask(0x0E), byte_answer(1));
   EXPECT_EQ(host.device.settings().constancy, constant_frequency::on);
-}
-
-TEST(SimCommands, SampleRate_Cycles) {
-  host_side host;
-  EXPECT_EQ(host.ask(0xD1), byte_answer(2));
-  EXPECT_EQ(host.ask(0xD0), byte_answer(0));
-  EXPECT_EQ(host.ask(0xD1), byte_answer(0));
-  EXPECT_EQ(host.ask(0xD0), byte_answer(1));
-  EXPECT_EQ(host.ask(0xD0), byte_answer(2));
 }
 
 TEST(SimCommands, Protection_TogglesAndAnswers) {
@@ -187,46 +166,6 @@ TEST(SimCommands, AreLoggedWithTheirTimes) {
   EXPECT_EQ(host.device.log_missed(), 1U);
   host.device.clear_log();
   EXPECT_THAT(host.device.log(), IsEmpty());
-}
-
-// The last section of the protocol page: the commands of the vendor's software for 9 kHz, 10 Hz,
-// protection on.
-TEST(SimCommands, VendorSoftware_Works) {
-  host_side host;
-  EXPECT_THAT(host.ask(0x00, ms), IsEmpty());
-  EXPECT_THAT(host.ask(0x65, 500 * ms), IsEmpty());
-  EXPECT_EQ(host.ask(0x92), healthy);
-  EXPECT_EQ(host.ask(0x90), information);
-  EXPECT_EQ(host.ask(0xD1), byte_answer(2));
-  EXPECT_EQ(host.ask(0xD0), byte_answer(0));
-  EXPECT_EQ(host.ask(0xD0), byte_answer(1));
-  EXPECT_EQ(host.ask(0xD0), byte_answer(2));
-  EXPECT_EQ(host.ask(0x0D), frequency_answer(700));
-  for (unsigned chz = 800; chz <= 1000; chz += 100) {
-    EXPECT_EQ(host.ask(0x0B), frequency_answer(chz));
-  }
-  EXPECT_EQ(host.ask(0x09), frequency_answer(1010));
-  EXPECT_EQ(host.ask(0x0A), frequency_answer(1000));
-  EXPECT_EQ(host.ask(0x0D), frequency_answer(1000));
-  EXPECT_EQ(host.ask(0xD9), byte_answer(0));
-  (void)host.ask(0x00, ms);
-  EXPECT_THAT(host.ask(0x65, 500 * ms), IsEmpty());
-  host.send(0x60);
-  const test::heard first = host.hear(second);
-  ASSERT_EQ(first.responses, std::vector{response_kind::scan_started});
-  EXPECT_EQ(first.bytes[7], 0x00) << "the stray byte behind the header";
-  std::size_t turns = 0;
-  for (int i = 0; i < 6; ++i) {
-    host.send(0x60);
-    const test::heard more = host.hear(3 * second / 2);
-    EXPECT_THAT(more.responses, IsEmpty()) << "feeding the protection brings no header";
-    turns += more.zero_packets;
-  }
-  EXPECT_NEAR(static_cast<double>(turns), 90.0, 2.0) << "9 s at 10 Hz";
-  (void)host.ask(0x00, ms);
-  (void)host.ask(0x65, 100 * ms);
-  EXPECT_THAT(host.listen(second), IsEmpty());
-  EXPECT_TRUE(host.device.is_idle_and_silent(host.now_ns));
 }
 
 }  // namespace

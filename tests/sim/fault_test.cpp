@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <bit>
 #include <cstdint>
 #include <vector>
 
@@ -16,7 +15,6 @@ namespace {
 using namespace g4lidar;
 using sim::fault;
 using sim::fault_kind;
-using sim::forever_ns;
 using sim::make_fault;
 using test::byte_vector;
 using test::heard;
@@ -46,29 +44,6 @@ heard ten_seconds(std::initializer_list<fault> faults) {
   return host.hear(10 * second);
 }
 
-TEST(SimFaults, FlipsBits) {
-  const heard clean = ten_seconds({});
-  const heard flipped = ten_seconds({with_rate(make_fault(fault_kind::flip), 0.001)});
-  ASSERT_EQ(flipped.bytes.size(), clean.bytes.size());
-  int wrong_bytes = 0;
-  for (std::size_t i = 0; i < clean.bytes.size(); ++i) {
-    const int wrong = std::popcount(static_cast<unsigned>(clean.bytes[i] ^ flipped.bytes[i]));
-    ASSERT_LE(wrong, 1);
-    wrong_bytes += wrong;
-  }
-  EXPECT_NEAR(wrong_bytes, 203, 60);
-  EXPECT_LT(flipped.packets, clean.packets - 100);
-}
-
-TEST(SimFaults, DropsAndInsertsBytes) {
-  const auto clean = static_cast<double>(ten_seconds({}).bytes.size());
-  const auto size = [](fault_kind kind) {
-    return static_cast<double>(ten_seconds({with_rate(make_fault(kind), 0.001)}).bytes.size());
-  };
-  EXPECT_NEAR(size(fault_kind::drop) - clean, -203.0, 60.0);
-  EXPECT_NEAR(size(fault_kind::insert) - clean, 203.0, 60.0);
-}
-
 TEST(SimFaults, Bursts_HaveTheGivenLength) {
   const heard clean = ten_seconds({});
   const heard hit = ten_seconds({with_amount(with_rate(make_fault(fault_kind::burst), 1e-4), 50)});
@@ -78,14 +53,6 @@ TEST(SimFaults, Bursts_HaveTheGivenLength) {
   EXPECT_NEAR(static_cast<double>(wrong), 20 * 50.0, 500.0);
 }
 
-TEST(SimFaults, TruncatesPackets) {
-  const heard clean = ten_seconds({});
-  const heard cut = ten_seconds({with_rate(make_fault(fault_kind::truncate), 0.1)});
-  EXPECT_NEAR(static_cast<double>(cut.packets), 0.9 * static_cast<double>(clean.packets), 60.0);
-  EXPECT_LT(cut.bytes.size(), clean.bytes.size());
-  EXPECT_GT(cut.skipped_bytes, 0U);
-}
-
 TEST(SimFaults, Stall_DelaysBytesAndLosesNone) {
   host_side host({}, {make_fault(fault_kind::stall, second, 100 * ms)});
   (void)host.ask(command::start, second);
@@ -93,12 +60,6 @@ TEST(SimFaults, Stall_DelaysBytesAndLosesNone) {
   EXPECT_GT(host.listen(2 * ms).size(), 2'000U);
   const byte_vector steady = host.listen(100 * ms);
   EXPECT_NEAR(static_cast<double>(steady.size()), 2'036.0, 100.0);
-}
-
-TEST(SimFaults, EndlessStall_IsSilence) {
-  host_side host({}, {make_fault(fault_kind::stall, second)});
-  (void)host.ask(command::start, 1'010 * ms);
-  EXPECT_THAT(host.listen(10 * second), IsEmpty());
 }
 
 TEST(SimFaults, Batch_DeliversBytesTogether) {
@@ -154,14 +115,6 @@ TEST(SimFaults, Rate_IsOfAllAnswers) {
   EXPECT_NEAR(answered, 300, 40);
 }
 
-TEST(SimFaults, Deaf_ReceivesNoCommands) {
-  host_side host({}, {make_fault(fault_kind::scanning), make_fault(fault_kind::deaf)});
-  (void)host.ask(command::stop);
-  EXPECT_TRUE(host.device.is_scanning());
-  EXPECT_GT(host.hear(second).packets, 200U);
-  EXPECT_THAT(host.device.log(), IsEmpty());
-}
-
 TEST(SimFaults, Scanning_BeginsAtFullSpeed) {
   host_side host({}, {make_fault(fault_kind::scanning)});
   const heard got = host.hear(second);
@@ -170,15 +123,6 @@ TEST(SimFaults, Scanning_BeginsAtFullSpeed) {
   host_side later({}, {make_fault(fault_kind::scanning, second)});
   EXPECT_THAT(later.listen(second), IsEmpty());
   EXPECT_GT(later.hear(second).packets, 200U);
-}
-
-TEST(SimFaults, WrongBaudRate_IsGarbage) {
-  host_side host({}, {make_fault(fault_kind::scanning), make_fault(fault_kind::baud)});
-  const heard got = host.hear(2 * second);
-  EXPECT_GT(got.bytes.size(), 15'000U);
-  EXPECT_EQ(got.packets, 0U);
-  (void)host.ask(command::stop);
-  EXPECT_TRUE(host.device.is_scanning());
 }
 
 TEST(SimFaults, BrownOut_SilencesTheDeviceUntilItEnds) {
@@ -239,18 +183,6 @@ TEST(SimFaults, UnplugAndReplug) {
     EXPECT_THAT(host.hear(second).responses, ElementsAre(response_kind::device_info));
     EXPECT_EQ(host.device.settings().scan_frequency_chz, outlives ? 800 : 700);
   }
-}
-
-TEST(SimFaults, UnplugByCall) {
-  host_side host;
-  (void)host.ask(command::start, second);
-  host.device.unplug(host.now_ns);
-  EXPECT_FALSE(host.device.is_plugged(host.now_ns));
-  EXPECT_EQ(host.device.next_ns(host.now_ns), forever_ns);
-  EXPECT_THAT(host.listen(second), IsEmpty());
-  host.device.replug(host.now_ns);
-  (void)host.listen(second);
-  EXPECT_EQ(host.ask(command::device_info), information);
 }
 
 TEST(SimFaults, Health_ChangesAndRecovers) {

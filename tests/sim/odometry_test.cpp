@@ -121,16 +121,6 @@ TEST(Odometry, NoiseHasTheStatedDeviationAtAnyRate) {
   }
 }
 
-TEST(Odometry, TheSameSeedGivesTheSameNumbers) {
-  const sim::world world = driving(winding);
-  sim::odometry_options options;
-  options.way_noise = options.turn_noise = 0.05;
-  const sim::odometry_sample one = last_of(world, options);
-  EXPECT_EQ(last_of(world, options), one);
-  options.seed = 2;
-  EXPECT_NE(last_of(world, options), one);
-}
-
 TEST(Odometry, OfAFixedLidarIsZero) {
   sim::odometry_options options;
   options.way_noise = options.turn_noise = 0.05;

@@ -51,20 +51,6 @@ TEST(SimScanning, Motor_SpinsUp) {
   EXPECT_NEAR(host.device.motor_mhz(host.now_ns), 7'000.0, 20.0);
 }
 
-TEST(SimScanning, SampleRateAndFrequency_AreAsSet) {
-  for (const sample_rate rate : {sample_rate::khz_4, sample_rate::khz_8, sample_rate::khz_9}) {
-    sim::device_options options;
-    options.scanner.sample_rate = rate;
-    options.scanner.scan_frequency_chz = 1000;
-    host_side host(options);
-    (void)started(host, 2 * second);
-    const heard steady = host.hear(10 * second);
-    EXPECT_NEAR(static_cast<double>(steady.samples), 10.0 * to_hz(rate), 80.0);
-    EXPECT_NEAR(static_cast<double>(steady.zero_packets), 100.0, 1.5);
-    EXPECT_EQ(steady.suspect, 0U);
-  }
-}
-
 TEST(SimScanning, TrueSampleRate_MayDeviateAndDrift) {
   sim::device_options options;
   options.scanner.sample_rate_ratio = 1.03;

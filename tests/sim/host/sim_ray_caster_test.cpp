@@ -120,30 +120,6 @@ sim::world random_world(sim::random_stream& random) {
   return world;
 }
 
-TEST(SimRayCaster, Target_IsAtTheCorrectedBearingAndOnItsWall) {
-  sim::random_stream random(11);
-  std::size_t met = 0;
-  for (int i = 0; i < 2000 * scale(); ++i) {
-    const sim::world world = random_world(random);
-    const sim::ray_caster caster(world);
-    for (int ray = 0; ray < 50; ++ray) {
-      const double theta = random.uniform() * 360.0;
-      const auto seen = caster.cast(theta);
-      if (!seen) continue;
-      ++met;
-      const double bearing = theta + reference_correction_deg(seen->range_mm);
-      const double apart = std::remainder(seen->bearing_deg - bearing, 360.0);
-      ASSERT_NEAR(apart, 0.0, 1e-9);
-      ASSERT_GE(seen->bearing_deg, 0.0);
-      ASSERT_LT(seen->bearing_deg, 360.0);
-      const point target = stands_at(world.lidar, seen->range_mm, seen->bearing_deg);
-      ASSERT_LT(distance_m(target, world.walls.at(seen->wall)), 1e-6)
-          << "world " << i << " theta " << theta << " range " << seen->range_mm;
-    }
-  }
-  EXPECT_GT(met, 20'000U);
-}
-
 TEST(SimRayCaster, Target_IsTheNearestOnTheBeam) {
   sim::random_stream random(12);
   const walked_beam beam(20'000.0);
@@ -159,7 +135,7 @@ TEST(SimRayCaster, Target_IsTheNearestOnTheBeam) {
       if (walked) {
         ASSERT_TRUE(seen) << "world " << i << " theta " << theta << " walked " << walked->to_mm;
         // The steps deviate from the curve by far less than this. A nearer target is one that a
-        // step has passed over; the check above shows that it is on its wall.
+        // step has passed over.
         ASSERT_LT(seen->range_mm, walked->to_mm + 0.01) << "world " << i << " theta " << theta;
         ++met;
       } else {
@@ -191,61 +167,6 @@ TEST(SimRayCaster, BeamThatCrossesAWallTwice_HitsTheNearerPoint) {
     twice += seen->range_mm < 400.0 ? 1U : 0U;
   }
   EXPECT_GT(twice, 5U);
-}
-
-TEST(SimRayCaster, WallSeenEdgeOn_GivesTheExactInverseOfTheCorrection) {
-  sim::world world;
-  world.walls.push_back({0.03, 0.0, 16.0, 0.0});  // on the bearing 0
-  const sim::ray_caster caster(world);
-  for (double d = 31.0; d < 16'000.0; d += 0.5) {
-    const double theta = -reference_correction_deg(d);
-    const auto seen = caster.cast(theta < 0.0 ? theta + 360.0 : theta);
-    ASSERT_TRUE(seen) << d;
-    ASSERT_NEAR(seen->range_mm, d, 1e-6);
-  }
-}
-
-TEST(SimRayCaster, Room_HasNoHolesAtItsCorners) {
-  sim::world room;
-  room.walls = {{-2, -1, 3, -1.5}, {3, -1.5, 3.5, 2}, {3.5, 2, -2.5, 2.5}, {-2.5, 2.5, -2, -1}};
-  const sim::ray_caster caster(room);
-  for (int i = 0; i < 360'000; ++i) ASSERT_TRUE(caster.cast(i / 1000.0)) << i;
-  // Exactly into each corner, and the adjacent doubles.
-  for (const sim::wall& w : room.walls) {
-    const double range = 1000.0 * std::hypot(w.x1_m, w.y1_m);
-    double theta = -std::atan2(w.y1_m, w.x1_m) / radian - reference_correction_deg(range);
-    theta = theta < 0.0 ? theta + 360.0 : theta;
-    double before = theta;
-    double behind = theta;
-    for (int i = 0; i < 1000; ++i) {
-      ASSERT_TRUE(caster.cast(before));
-      ASSERT_TRUE(caster.cast(behind));
-      before = std::nextafter(before, 0.0);
-      behind = std::nextafter(behind, 360.0);
-    }
-  }
-}
-
-TEST(SimRayCaster, BuiltInWorld_HasEveryKindOfTarget) {
-  const sim::ray_caster caster(sim::built_in_world());
-  std::size_t too_near = 0;
-  std::size_t too_far = 0;
-  std::size_t near_by = 0;
-  for (int i = 0; i < 36'000; ++i) {
-    const auto seen = caster.cast(i / 100.0);
-    ASSERT_TRUE(seen) << i;  // the flat is closed
-    too_near += seen->range_mm < 280.0 ? 1U : 0U;
-    near_by += seen->range_mm >= 280.0 && seen->range_mm < 450.0 ? 1U : 0U;
-    too_far += seen->range_mm > 16'000.0 ? 1U : 0U;
-  }
-  EXPECT_GT(too_near, 500U);
-  EXPECT_GT(near_by, 500U);
-  EXPECT_GT(too_far, 500U);
-}
-
-TEST(SimRayCaster, EmptyWorld_ReturnsNothing) {
-  const sim::ray_caster caster({});
-  for (int i = 0; i < 360; ++i) EXPECT_FALSE(caster.cast(i));
 }
 
 }  // namespace

@@ -101,14 +101,6 @@ std::vector<revolution> revolutions_of(const byte_vector& bytes, const std::stri
 
 using reference::crc_8_maxim;
 
-TEST(SimOneWay, TheReferenceOfTheCrc) {
-  // The CT bytes of a revolution and their CRC, from the description of the family.
-  EXPECT_EQ(crc_8_maxim(std::vector<std::uint8_t>{0x7F, 0x48, 0x32, 0x02, 0x42, 0x0E, 0x00, 0x48,
-                                                  0x00, 0x18, 0x30, 0x78, 0xC0, 0x72, 0x56, 0x5C,
-                                                  0xE8, 0x00, 0x00, 0x00, 0x00, 0x00}),
-            0x93U);
-}
-
 TEST(SimModels, ACrcByteIsSentWhereItIsKnown) {
   const auto sends = [](const std::string& word) {
     const auto all =
