@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Coordinates, grids and twists in C.
+#include <array>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <numbers>
 #include <vector>
@@ -121,34 +121,6 @@ TEST(CTurn, PointsAreTurnedByTheArgument) {
   EXPECT_EQ(ranges[0], 65.535F);
   options.turn_deg = 90;
   EXPECT_EQ(g4lidar_fill_grid(points.data(), 2, &options, ranges.data(), 4), G4LIDAR_BAD_ARGUMENT);
-}
-
-TEST(CEstimator, EstimatesTheTwistOfADrivingRobot) {
-  // The lidar looks ahead: its cable is behind.
-  const simulator device = simulate("sim:?seed=3", nullptr, "drive forward 1.5 0.3\n");
-  const lidar it = start_on(device);
-  g4lidar_estimator* estimator = nullptr;
-  ASSERT_EQ(g4lidar_estimator_create(&estimator, nullptr), G4LIDAR_OK);
-  g4lidar_twist_estimate estimate{};
-  double fastest = 0.0;
-  for (int i = 0; i < 20; ++i) {
-    const g4lidar_scan* scan = next_whole(it);
-    ASSERT_NE(scan, nullptr);
-    ASSERT_EQ(g4lidar_estimator_add_of_model(estimator, scan->points, scan->point_count,
-                                             scan->model, &estimate),
-              G4LIDAR_OK);
-    if (i == 0) {
-      EXPECT_EQ(estimate.status, G4LIDAR_TWIST_FIRST_SCAN);
-    }
-    if (estimate.status != G4LIDAR_TWIST_KNOWN) continue;
-    EXPECT_TRUE(estimate.known[0] && estimate.known[1] && estimate.known[2]);
-    EXPECT_GT(estimate.covariance[0], 0.0);
-    fastest = std::max(fastest, std::hypot(estimate.twist.x_m_per_s, estimate.twist.y_m_per_s));
-  }
-  g4lidar_estimator_free(estimator);
-  // The speed of a smooth path is up to half above its mean.
-  EXPECT_GT(fastest, 0.2);
-  EXPECT_LT(fastest, 0.6);
 }
 
 }  // namespace

@@ -13,7 +13,6 @@
 #include <functional>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "server.hpp"
@@ -131,35 +130,6 @@ class Merged : public Server {
   }
 };
 
-TEST_F(Merged, EachPointIsWhereItsLidarHasMeasuredIt) {
-  if constexpr (std::endian::native != std::endian::little) GTEST_SKIP();
-  begin_both();
-  const auto client = open_page();
-  const revolution got = next_revolution(*client, has_both);
-  ASSERT_EQ(got.of_each.size(), 2U);
-  EXPECT_EQ(got.of_each[0] + got.of_each[1], got.points.size());
-  for (const place& at : got.points) EXPECT_LT(to_wall(at), 0.06) << at.x << ' ' << at.y;
-  EXPECT_FALSE(got.pose) << "the motion is not known";
-  // Points of one lidar follow each other clockwise around its own place, so each belongs to the lidar that is named.
-  const std::array<place, 2> lidars{{{0.3, 0.1}, {-0.4, -0.2}}};
-  std::size_t from = 0;
-  for (std::size_t lidar = 0; lidar < 2; ++lidar) {
-    std::array<std::size_t, 2> back{};  // around the place of each lidar
-    for (std::size_t i = from + 1; i < from + got.of_each[lidar]; ++i) {
-      for (std::size_t around = 0; around < 2; ++around) {
-        const auto bearing = [&](const place& at) {
-          return std::atan2(at.y - lidars[around].y, at.x - lidars[around].x);
-        };
-        const double step = std::remainder(bearing(got.points[i]) - bearing(got.points[i - 1]),
-                                           2 * 3.14159265358979);
-        if (step > 0.0005) ++back[around];
-      }
-    }
-    EXPECT_LT(back[lidar], 20U) << lidar;
-    from += got.of_each[lidar];
-  }
-}
-
 TEST_F(Merged, PagesKnowTheLidars) {
   begin_both({"--allow-set"}, "", "&model=t-mini");
   const auto client = open_page();
@@ -195,20 +165,6 @@ TEST_F(Merged, PagesKnowTheLidars) {
   EXPECT_EQ(answer_to(*client, R"({"op":"set","lidar":"rear","name":"direction","value":"cw"})",
                       "error")["of"],
             "set");
-}
-
-TEST_F(Merged, WithoutOneOfThem_TheOthersAreShown) {
-  if constexpr (std::endian::native != std::endian::little) GTEST_SKIP();
-  begin_both({}, "&fault=unplug@4s");
-  const auto client = open_page();
-  const json status =
-      next_status(*client, [](const json& now) { return now["lidars"][0]["state"] == "lost"; });
-  EXPECT_EQ(status["state"], "running");
-  EXPECT_THAT(status["why"].get<std::string>(), StartsWith("front: "));
-  const revolution got = next_revolution(*client, [](const revolution& each) {
-    return each.of_each.size() == 2 && each.of_each[0] == 0 && each.of_each[1] > 800;
-  });
-  for (const place& at : got.points) EXPECT_LT(to_wall(at), 0.06);
 }
 
 TEST_F(Merged, EachLidarIsRecorded_WithinTheLimitTogether) {

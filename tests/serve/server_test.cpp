@@ -267,24 +267,6 @@ TEST_F(Server, DamagedHandshakesAndFrames_EndOnlyTheirConnection) {
   EXPECT_EQ(end().code, 128 + SIGTERM);
 }
 
-TEST_F(Server, TwoHundredConnections_LeaveTheFirstAlone) {
-  begin();
-  const auto good = open_page();
-  {
-    std::vector<raw_client> many;
-    for (int i = 0; i < 250; ++i) {
-      many.emplace_back(port_);
-      if (i % 2 == 0) many.back().send("GET / HTTP/1.1\r\nHost: localhost\r\n");
-    }
-    EXPECT_TRUE(gets_scans(*good, 10));
-  }
-  // The server may have to close them first.
-  EXPECT_TRUE(g4lidar::test::comes_true([&] {
-    raw_client next(port_);
-    return next.upgrade(page).starts_with("HTTP/1.1 101") && gets_scans(next, 1);
-  }));
-}
-
 TEST_F(Server, LostLidar_IsShownAndComesBack) {
   begin({}, "sim:?fault=unplug@2s+3s");
   const auto client = open_page();
