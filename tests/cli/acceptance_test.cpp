@@ -67,15 +67,6 @@ TEST_F(AcceptanceVerb, AsksItsUser_AndWritesAFileThatReplays) {
   EXPECT_EQ(lines_of(played.out).size(), 3U) << played.out;  // a heading, and two scans
 }
 
-TEST_F(AcceptanceVerb, AFileThatExists_IsNotReplaced) {
-  const std::string file = path("g4.mcap");
-  ASSERT_EQ(run({"record", "-d", "500ms", "-o", file, "sim:"}).code, 0);
-  const auto size = std::filesystem::file_size(file);
-  const outcome done = run({"acceptance", "--alone", "--file", file, "sim:"});
-  EXPECT_EQ(done.code, 10) << done.err;
-  EXPECT_EQ(std::filesystem::file_size(file), size);
-}
-
 TEST_F(AcceptanceVerb, WithoutAModel_ItIsTheOneOfTheLidar) {
   const outcome done = run({"acceptance", "--alone", "-d", "500ms", "--file", path("x4.mcap"),
                             "sim:?model=x4&any_baud=true"});

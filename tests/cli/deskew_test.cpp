@@ -1,11 +1,7 @@
 // SPDX-License-Identifier: MIT
-// g4-dump convert --deskew: a robot drives towards a wall and turns in front of it.
+// g4-dump convert --deskew: what it counts and refuses. Its points are those of the library (equal_shapes_test.cpp).
 #include <gmock/gmock.h>
 
-#include <algorithm>
-#include <cmath>
-#include <map>
-#include <numbers>
 #include <string>
 #include <vector>
 
@@ -28,62 +24,7 @@ class Deskew : public cli::scratch {
                               path("way.odo"), "-o", path("way.bin")});
     ASSERT_EQ(made.code, 0) << made.err;
   }
-  /// How far from the walls the points are, in metres: the 90th percentile. The pose of each revolution is that in
-  /// the TUM file; the points are those of the csv file.
-  double off_the_walls(const std::vector<std::string>& options) {
-    std::vector<std::string> words{"convert", path("way.bin"), path("way.csv"), "--force",
-                                   "--frame", "robot",         "--unit",        "m",
-                                   "--range", "0.1:",          "--odometry",    path("way.odo")};
-    words.insert(words.end(), options.begin(), options.end());
-    const outcome done = run(words);
-    EXPECT_EQ(done.code, 0) << done.err;
-    struct pose {
-      double x, y, yaw;
-    };
-    std::map<long long, pose> poses;  // by the time of the first point, in microseconds
-    for (const std::string& line : cli::lines_of(cli::read_file(path("way.tum")))) {
-      const auto word = numbers(line, ' ');
-      poses[std::llround(word.at(0) * 1e6)] = {word.at(1), word.at(2),
-                                               2.0 * std::atan2(word.at(6), word.at(7))};
-    }
-    std::vector<double> off;
-    long long scan = -1;
-    const pose* from = nullptr;
-    const auto rows = cli::lines_of(cli::read_file(path("way.csv")));
-    for (std::size_t i = 1; i < rows.size(); ++i) {
-      const auto word = numbers(rows[i], ',');
-      if (std::llround(word.at(0)) != scan) {
-        scan = std::llround(word.at(0));
-        const auto found = poses.find(std::llround(std::floor(word.at(3) / 1e3)));
-        from = found == poses.end() ? nullptr : &found->second;
-      }
-      if (from == nullptr) continue;  // not a whole revolution
-      const double direction = from->yaw + word.at(1) * std::numbers::pi / 180.0;
-      const double x = from->x + word.at(2) * std::cos(direction);
-      const double y = from->y + word.at(2) * std::sin(direction);
-      off.push_back(std::min(std::fabs(std::fabs(x) - 4.0), std::fabs(std::fabs(y) - 3.0)));
-    }
-    EXPECT_GT(off.size(), 30'000U);
-    std::sort(off.begin(), off.end());
-    return off.empty() ? 99.0 : off[off.size() * 9 / 10];
-  }
-  static std::vector<double> numbers(const std::string& line, char between) {
-    std::vector<double> all;
-    for (std::size_t at = 0; at < line.size(); at = line.find(between, at) + 1) {
-      all.push_back(std::strtod(line.c_str() + at, nullptr));
-      if (line.find(between, at) == std::string::npos) break;
-    }
-    return all;
-  }
 };
-
-TEST_F(Deskew, EachRevolutionIsSeenFromThePlaceOfItsFirstPoint) {
-  ASSERT_EQ(run({"convert", path("way.bin"), path("way.tum"), "--odometry", path("way.odo")}).code,
-            0);
-  EXPECT_GT(off_the_walls({}), 0.1);
-  EXPECT_LT(off_the_walls({"--deskew", "odometry"}), 0.003);
-  EXPECT_LT(off_the_walls({"--deskew", "scans"}), 0.03);
-}
 
 /// The estimator sees the whole revolution, whatever is written of it.
 TEST_F(Deskew, ByScans_OfAFieldOfView) {
@@ -136,15 +77,6 @@ TEST_F(Deskew, OdometryThatEndsEarly_IsReported) {
                             "--odometry", path("short.odo")});
   EXPECT_EQ(done.code, 0);
   EXPECT_THAT(done.err, HasSubstr("not deskewed: the odometry has no pose at their time"));
-}
-
-TEST_F(Deskew, InvalidMount_IsRefused) {
-  for (const std::string word : {"1,2", "1,2,x", "1,2,3,up", "1e9,0,0", "", ",,"}) {
-    const outcome done =
-        run({"convert", path("way.bin"), path("no.csv"), "--mount", word, "--deskew", "scans"});
-    EXPECT_EQ(done.code, 2) << word;
-    EXPECT_THAT(done.err, HasSubstr("--mount")) << word;
-  }
 }
 
 }  // namespace

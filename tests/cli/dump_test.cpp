@@ -3,8 +3,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <cstdint>
-#include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -14,7 +12,6 @@
 namespace {
 
 using namespace cli;
-using nlohmann::json;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
@@ -61,32 +58,6 @@ TEST(Dump, IgnoredDirectionsAndRanges) {
           .out;
   for (const row& r : rows_of(twice)) ASSERT_GT(r.angle_deg, 359.0);
   EXPECT_GT(rows_of(twice).size(), 0U);
-}
-
-TEST(Dump, Metres) {
-  const std::string csv = run({"dump", "-", "-f", "csv", "--unit", "m", "-q"}, all_around()).out;
-  EXPECT_THAT(csv, StartsWith("scan,angle_deg,range_m,time_ns\n"));
-  EXPECT_THAT(csv, HasSubstr(",16.38375,"));
-  EXPECT_THAT(csv, HasSubstr(",0.00125,"));
-  const std::string first =
-      lines_of(run({"dump", "-", "-f", "jsonl", "--unit", "m", "-q"}, all_around()).out).at(4);
-  EXPECT_EQ(json::parse(first).at("range_m"), 0.28);
-  EXPECT_THAT(run({"dump", "-", "--unit", "m", "-q"}, all_around()).out, HasSubstr("  0.28000  "));
-}
-
-TEST(Dump, JsonlAndCsv_HaveTheSameNames) {
-  const json first =
-      json::parse(lines_of(run({"dump", "-", "-f", "jsonl", "--frame", "robot", "-q"},
-                               cli::packet(90, 91, {0, 300}))
-                               .out)
-                      .at(1));
-  EXPECT_EQ(first.size(), 6U);
-  EXPECT_EQ(first.at("scan"), 0);
-  EXPECT_NEAR(first.at("angle_deg").get<double>(), 180.0 - 91.0 - 8.547194, 1e-4);
-  EXPECT_EQ(first.at("range_mm"), 75);
-  EXPECT_EQ(first.at("time_ns"), 111111);
-  EXPECT_EQ(first.at("no_return"), false);
-  EXPECT_EQ(first.at("too_near"), true);
 }
 
 TEST(Dump, Count_IsAppliedAfterTheFilters) {
@@ -166,28 +137,6 @@ TEST(Dump, InvalidOptions_AreRefused) {
   refused({"-n", "0"}, "--count");
   refused({"-d", "0"}, "--duration");
   refused({"--grid", "3"}, "unknown option");
-}
-
-/// Two valid packets of one sample of 3 bytes each, worked out by hand: 1000 mm with flags 2 at 90
-/// degrees and with 1 at 91.
-const std::string t_mini_bytes(
-    "\xAA\x55\x01\x01\x01\x2D\x01\x2D\x0E\x5B\x07\xA2\x0F"
-    "\xAA\x55\x00\x01\x81\x2D\x81\x2D\x8A\x5B\x81\xA1\x0F",
-    26);
-
-TEST(Dump, PointsOfAnotherModel) {
-  const outcome done = run({"dump", "-", "--model", "t-mini-pro", "-f", "csv", "-q"}, t_mini_bytes);
-  EXPECT_EQ(done.out,
-            "scan,angle_deg,range_mm,time_ns,intensity,sample_flags\n"
-            "0,90.000000,1000.00,0,7,2\n"
-            "0,91.000000,1000.00,250000,129,1\n");
-  EXPECT_EQ(done.code, 0);
-}
-
-TEST(Dump, AModelThatIsNone) {
-  const outcome done = run({"dump", "-", "--model", "x44"}, t_mini_bytes);
-  EXPECT_EQ(done.code, 2);
-  EXPECT_THAT(done.err, HasSubstr("'x44' is not one of g4, "));
 }
 
 TEST(Dump, AModelThatContradictsTheSource_IsRefused) {

@@ -21,7 +21,6 @@ using cli::run;
 using cli::stream;
 using ::testing::EndsWith;
 using ::testing::HasSubstr;
-using ::testing::Not;
 using ::testing::StartsWith;
 
 class Failure : public cli::scratch {
@@ -213,21 +212,6 @@ TEST_F(Failure, OutputIsADirectory) {
   expect_sentence(run({"decode", good(), "-o", directory_}), 10, "is a directory. Give the name");
 }
 
-TEST_F(Failure, OutputIsTheInput) {
-  const std::string name = good();
-  const std::string bytes = cli::read_file(name);
-  std::filesystem::create_symlink(name, path("link"));
-  std::filesystem::create_hard_link(name, path("other"));
-  for (const char* const out : {"good.bin", "link", "other"}) {
-    expect_sentence(run({"decode", name, "-o", path(out)}), 2,
-                    "is also the input. Give another name for the output.");
-  }
-  cli::program redirected({"decode", "-", "-o", name}, {stream::of_file(name), {}, {}});
-  expect_sentence(redirected.wait(), 2, "is also the input. Give another name for the output.");
-  EXPECT_EQ(cli::read_file(name), bytes);
-  EXPECT_EQ(listing(), "good.bin\nlink\nother\n");
-}
-
 TEST_F(Failure, StandardOutputIsClosed) {
   cli::program started({"decode", good()}, {{}, stream::none(), {}});
   const outcome done = started.wait();
@@ -250,15 +234,6 @@ TEST_F(Failure, WorldFiles) {
   expect_sentence(run({"sim", "--world", path("none.txt")}), 10, "No such file or directory");
   expect_sentence(run({"sim", "--world", directory_}), 10, "is a directory");
   expect_nothing_written({"sim", "--world", path("world.txt")});
-}
-
-TEST_F(Failure, SimWithOnePathForTwoOutputs) {
-  for (const char* const truth : {"x", "./x"}) {
-    const std::string name = (directory_ / truth).string();
-    expect_sentence(run({"sim", "-o", path("x"), "--truth", name}), 2, "is also another output");
-  }
-  expect_sentence(run({"sim", "-o", "-", "--truth", "-"}), 2, "is also another output");
-  EXPECT_EQ(listing(), "");
 }
 
 TEST_F(Failure, ReplacedOutput_LeavesNoOtherFile) {
@@ -293,14 +268,6 @@ TEST_F(Failure, OutOfMemoryIsNotABadFile) {
   }
   ASSERT_TRUE(seen);
   EXPECT_EQ(cli::read_file(path("err")), "g4-dump: out of memory\n");
-}
-
-TEST_F(Failure, Link_StaysALink) {
-  cli::write_file(path("real.csv"), "older\n");
-  std::filesystem::create_symlink("real.csv", path("link.csv"));
-  EXPECT_EQ(run({"decode", good(), "-o", path("link.csv"), "--force"}).code, 0);
-  EXPECT_TRUE(std::filesystem::is_symlink(path("link.csv")));
-  EXPECT_THAT(cli::read_file(path("real.csv")), StartsWith("scan,"));
 }
 
 TEST(Help, IsOnStandardOutputAndHasExamples) {

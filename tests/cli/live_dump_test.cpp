@@ -144,15 +144,6 @@ TEST_F(Live, File_GrowsAndIsValidAfterAKill) {
   EXPECT_THAT(cli::read_file(out), StartsWith("scan,angle_deg,range_mm,time_ns\n"));
 }
 
-TEST_F(Live, NoPoint_KeepsTheOlderFile) {
-  const std::string out = path("out.csv");
-  cli::write_file(out, "older\n");
-  EXPECT_EQ(run({"dump", path("none"), "-o", out, "--force"}).code, 3);
-  EXPECT_EQ(run({"dump", "sim:?fault=mute@0", "-o", out, "--force"}).code, 6);
-  EXPECT_EQ(cli::read_file(out), "older\n");
-  EXPECT_EQ(listing(), "out.csv\n");
-}
-
 TEST_F(Live, Loss_EndsItByDefault) {
   cli::simulator simulator(path("lidar"));
   program started({"dump", path("lidar"), "-f", "csv", "-o", path("out.csv")});

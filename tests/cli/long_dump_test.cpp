@@ -15,26 +15,7 @@ using cli::lines_of;
 using cli::outcome;
 using cli::run;
 
-class LongDump : public cli::scratch {
- protected:
-  static outcome dump(const std::string& name, const std::vector<std::string>& options) {
-    std::vector<std::string> arguments{"dump", name, "-q"};
-    arguments.insert(arguments.end(), options.begin(), options.end());
-    cli::program started(arguments, {{}, cli::stream::of_file("/dev/null"), {}});
-    return started.wait();
-  }
-};
-
-TEST_F(LongDump, NeedsNoMoreMemoryThanAShortOne) {
-  cli::write_repeated(path("short.bin"), cli::zero(0) + cli::turn(), 500'000);
-  cli::write_repeated(path("long.bin"), cli::zero(0) + cli::turn(), 10'000'000);
-  const std::vector<std::string> options{"-f",     "csv",     "--frame", "robot",  "--fov",
-                                         "-90:90", "--range", "0.1:16",  "--time", "delta"};
-  const outcome few = dump(path("short.bin"), options);
-  const outcome many = dump(path("long.bin"), options);
-  EXPECT_EQ(many.code, 0);
-  EXPECT_LT(many.max_rss_kib, few.max_rss_kib + 2048);
-}
+class LongDump : public cli::scratch {};
 
 // At one sample a second a file of some megabytes is a year long: no time overflows on the way, the
 // last one is exact, and the memory is that of a minute.

@@ -66,21 +66,6 @@ TEST_F(Near, NoReturn_IsWhatTheOptionSets) {
   EXPECT_THAT(grid_with({"--no-return", "far"}), HasSubstr("far"));
 }
 
-TEST_F(Near, PointsAreFlagged) {
-  const auto flags_of = [](const std::vector<std::string>& options) {
-    std::vector<std::string> words{"dump", "-", "-f", "jsonl", "-q"};
-    words.insert(words.end(), options.begin(), options.end());
-    const std::string out = run(words, something_came_nearer()).out;
-    std::size_t count = 0;
-    for (const std::string& line : lines_of(out)) {
-      count += line.find(R"("may_be_too_near":true)") != std::string::npos ? 1U : 0U;
-    }
-    return count;
-  };
-  EXPECT_EQ(flags_of({}), 0U);
-  EXPECT_GE(flags_of({"--near"}), 40U);
-}
-
 TEST_F(Near, IsForTheMessagesOfARecordingToo) {
   write_file("near.bin", something_came_nearer());
   const outcome good = run({"convert", "near.bin", "near.mcap", "--near", "--near-as", "minus-inf",

@@ -165,6 +165,7 @@ TEST_F(Outputs, NeverAreAnotherOutput) {
     EXPECT_THAT(done.err, HasSubstr("is also another output"));
     EXPECT_FALSE(fs::exists("a"));
   }
+  EXPECT_EQ(run({"sim", "-o", "-", "--truth", "-"}).code, 2);
   EXPECT_EQ(run({"doctor", "walk.bin", "--report", "a.txt", "-o", "a.txt"}).code, 2);
 }
 

@@ -22,10 +22,8 @@ namespace {
 
 using cli::outcome;
 using cli::program;
-using cli::run;
 using cli::stream;
 using g4lidar::test::comes_true;
-using ::testing::EndsWith;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
@@ -159,24 +157,6 @@ TEST_F(Pipe, InterruptedSimulation_LeavesNoFile) {
   started.send(SIGINT);
   EXPECT_EQ(started.wait().code, 130);
   EXPECT_EQ(listing(), "");
-}
-
-TEST_F(Pipe, LongFile_NeedsNoMoreMemoryThanAShortOne) {
-  const std::string block = cli::zero(0) + cli::turn();
-  const std::string short_one = path("short.bin");
-  const std::string long_one = path("long.bin");
-  cli::write_repeated(short_one, block, 500'000);
-  cli::write_repeated(long_one, block, 10'000'000);
-  for (const char* const format : {"csv", "jsonl"}) {
-    const auto decode = [&](const std::string& name) {
-      program started({"decode", name, "--format", format}, {{}, stream::of_file("/dev/null"), {}});
-      return started.wait();
-    };
-    const outcome few = decode(short_one);
-    const outcome many = decode(long_one);
-    EXPECT_EQ(many.code, 0);
-    EXPECT_LT(many.max_rss_kib, few.max_rss_kib + 2048) << format;
-  }
 }
 
 // Everything that a terminal on standard error is shown.

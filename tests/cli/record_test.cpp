@@ -163,20 +163,6 @@ TEST_F(Record, FilesAreRotated) {
   EXPECT_GT(bytes.size(), 20'000U);
 }
 
-TEST_F(Record, ExistingFile_IsNotChanged) {
-  cli::write_file(path("walk.mcap"), "dear");
-  expect_refused({"record", "sim:", path("walk.mcap")}, 10, "it exists already");
-  EXPECT_EQ(cli::read_file(path("walk.mcap")), "dear");
-  EXPECT_EQ(record_scans(path("walk.mcap"), 1, {"--force"}).code, 0);
-  expect_verified("walk.mcap");
-}
-
-TEST_F(Record, MissingSource_LeavesNoFile) {
-  EXPECT_EQ(run({"record", path("none"), path("walk.mcap")}).code, 3);
-  EXPECT_NE(run({"record", "tcp:localhost:1", path("walk.mcap")}).code, 0);
-  EXPECT_EQ(listing(), "");
-}
-
 TEST_F(Record, InvalidOptions_AreRefused) {
   expect_refused({"record", "sim:"}, 2, "no output file");
   expect_refused({"record", "sim:", "-o", "-"}, 2, "not to standard output");

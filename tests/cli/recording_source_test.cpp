@@ -3,7 +3,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -172,23 +171,6 @@ TEST(AnotherModel, HasAnExitCodeOfItsOwn) {
   EXPECT_EQ(done.code, 7);
   EXPECT_THAT(done.err, HasSubstr("\"problem\":\"other_device\""));
   EXPECT_THAT(run({"dump", "sim:?model_id=256"}).err, HasSubstr("'256'"));
-}
-
-TEST_F(RecordingSource, OptionOfAnotherKindOfSource_IsRefused) {
-  const auto expect_refused = [](const std::vector<std::string>& line, const std::string& why) {
-    const outcome done = run(line);
-    EXPECT_EQ(done.code, 2) << done.err;
-    EXPECT_THAT(done.err, HasSubstr(why));
-    EXPECT_EQ(done.out, "");
-  };
-  const std::string lidar = "--sample-rate, and sim: is a live lidar: ";
-  expect_refused({"dump", "sim:", "-n", "1", "--sample-rate", "4000"}, lidar);
-  expect_refused({"record", "sim:", "-n", "1", path("new.mcap"), "--sample-rate", "4000"}, lidar);
-  expect_refused({"view", "--once", "sim:", "--loop"}, "--loop, and sim: is a live lidar: ");
-  expect_refused({"scan", whole_, "--baud", "115200"},
-                 "--baud, and " + whole_ + " is a recording: ");
-  expect_refused({"record", whole_, path("new.mcap"), "--sample-rate", "4000"}, "is a recording: ");
-  EXPECT_FALSE(std::filesystem::exists(path("new.mcap")));
 }
 
 }  // namespace

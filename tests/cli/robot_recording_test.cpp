@@ -210,7 +210,8 @@ TEST_F(RobotRecording, Mistakes_AreRefused) {
                  "line 2: 'zero' is not a number");
   expect_refused({"record", in, out, "--odometry", path("bad.odo")}, 10, "line 2");
   expect_refused({"convert", in, out, "--odometry", path("missing.odo")}, 10, "missing.odo");
-  for (const std::string mount : {"1,2", "1,2,3,4", "1,2,3,up", "a,2,3", "1,2,2000", ",,"}) {
+  for (const std::string mount :
+       {"1,2", "1,2,3,4", "1,2,3,up", "a,2,3", "1,2,2000", "1e9,0,0", "", ",,"}) {
     expect_refused({"record", in, out, "--mount", mount}, 2, "--mount");
   }
   expect_refused({"record", in, out, "--order", "space"}, 2, "space");

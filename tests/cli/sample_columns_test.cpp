@@ -3,19 +3,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <cstddef>
-#include <cstdint>
-#include <cstring>
-#include <set>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "program.hpp"
 #include "support/family_reference.hpp"
-#include "support/laser_scan.hpp"
-#include "support/mcap_messages.hpp"
 
 namespace {
 
@@ -24,7 +17,6 @@ using cli::program;
 using cli::run;
 using ::testing::HasSubstr;
 using ::testing::Not;
-using ::testing::StartsWith;
 
 /// Ranges from 1 m to 1.36 m with every intensity and all flags, one of eight without return.
 const reference::family_revolutions& seen() {
@@ -114,80 +106,6 @@ TEST_F(SampleColumns, OfAPipe) {
   const outcome done = started.wait();
   EXPECT_EQ(done.code, 0) << done.err;
   EXPECT_EQ(text("b.csv"), all);
-}
-
-template <class Number>
-Number number_at(const std::string& data, std::size_t at) {
-  Number made{};
-  std::memcpy(&made, data.substr(at, sizeof made).data(), sizeof made);
-  return made;
-}
-
-TEST_F(SampleColumns, AreWrittenToFilesOfPoints) {
-  const auto returns = wanted([](const reference::family_point& p) { return p.range_mm > 0.0; });
-  for (const std::string from : {"a.csv", "a.jsonl"}) {
-    convert(from, "b.npy");
-    const std::string npy = text("b.npy");
-    std::vector<values> found;
-    for (std::size_t at = 256; at < npy.size(); at += 24) {
-      found.push_back(
-          {number_at<std::uint16_t>(npy, at + 22), number_at<std::uint8_t>(npy, at + 21)});
-    }
-    EXPECT_EQ(found, all_wanted()) << from;
-    convert(from, "b.ply");
-    const std::string ply = text("b.ply");
-    const std::size_t begin = ply.find("end_header\n") + 11;
-    constexpr std::size_t vertex = 6 * 4 + 8 + 4;
-    ASSERT_EQ(ply.size() - begin, returns.size() * vertex);
-    for (std::size_t i = 0; i < returns.size(); ++i) {
-      ASSERT_EQ(number_at<float>(ply, begin + (i + 1) * vertex - 4),
-                static_cast<float>(returns[i].intensity));
-    }
-    convert(from, "b.pcd", {"--ascii"});
-    const std::string pcd = text("b.pcd");
-    EXPECT_THAT(pcd, HasSubstr("FIELDS x y z range_m angle_deg time_ns intensity\n"));
-    const auto rows = cli::lines_of(pcd.substr(pcd.find("DATA ascii\n") + 11));
-    ASSERT_EQ(rows.size(), returns.size() / 4) << "one of four revolutions";
-    // Whether the first one is whole, csv does not state.
-    const std::size_t first = from == "a.csv" ? rows.size() : 0;
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-      ASSERT_EQ(std::stoul(rows[i].substr(rows[i].rfind(' '))), returns[first + i].intensity);
-    }
-  }
-}
-
-TEST_F(SampleColumns, OfMessagesInARecording) {
-  convert("raw.bin", "b.mcap", {"--model", "t-mini", "--points"});
-  const auto scans = g4lidar::test::mcap_messages(text("b.mcap"), "/scan");
-  ASSERT_EQ(scans.size(), 3U) << "the last one has no end";
-  const auto first = g4lidar::test::read_laser_scan(scans.front());
-  ASSERT_EQ(first.intensities.size(), first.ranges.size());
-  // A range is that of one of the points, and so is the intensity; 0 where there is no point.
-  std::set<std::pair<float, float>> possible{{0.0F, 0.0F}};
-  for (const reference::family_point& each : seen().points) {
-    possible.emplace(static_cast<float>(each.range_mm), static_cast<float>(each.intensity));
-  }
-  std::size_t bright = 0;
-  for (std::size_t i = 0; i < first.ranges.size(); ++i) {
-    const float range_m = std::isfinite(first.ranges[i]) ? first.ranges[i] : 0.0F;
-    const float range_mm = std::round(range_m * 1000.0F);
-    if (range_mm > 0.0F) {
-      EXPECT_TRUE(possible.contains({range_mm, first.intensities[i]})) << i;
-    }
-    bright += first.intensities[i] > 0.0F ? 1U : 0U;
-  }
-  EXPECT_GT(bright, 200U);
-  const auto clouds = g4lidar::test::mcap_messages(text("b.mcap"), "/points");
-  ASSERT_EQ(clouds.size(), 3U);
-  const auto returns = wanted([](const reference::family_point& p) { return p.range_mm > 0.0; });
-  const std::string cloud(clouds.front().begin(), clouds.front().end() - 1);  // without is_dense
-  constexpr std::size_t row = 28;
-  const std::size_t count = returns.size() / 4;
-  ASSERT_GT(cloud.size(), count * row);
-  for (std::size_t i = 0; i < count; ++i) {
-    ASSERT_EQ(number_at<float>(cloud, cloud.size() - (count - i) * row + 24),
-              static_cast<float>(returns[i].intensity));
-  }
 }
 
 TEST_F(SampleColumns, AreKeptByFiltersAndDeskewing) {

@@ -5,7 +5,6 @@
 
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <filesystem>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -158,67 +157,7 @@ TEST(Scan, GridsInOtherFormats) {
   EXPECT_EQ(run({"scan", "-", "--grid", "3", "-f", "pcd"}, bytes).code, 2);
 }
 
-class Pcd : public cli::scratch {
- protected:
-  /// The lines of the header, by their first word.
-  static std::string field(const std::string& file, const std::string& name) {
-    for (const std::string& line : lines_of(file)) {
-      if (line.starts_with(name + " ")) return line.substr(name.size() + 1);
-      if (line.starts_with("DATA")) break;
-    }
-    return "";
-  }
-};
-
-TEST_F(Pcd, BinaryAndAsciiHoldTheReturns) {
-  const std::vector<std::string> shape{"--frame", "robot", "--range", "0.1:16", "-q"};
-  const auto with = [&](std::vector<std::string> arguments) {
-    arguments.insert(arguments.end(), shape.begin(), shape.end());
-    return run(arguments, simulated()).out;
-  };
-  const std::string binary = with({"scan", "-", "-f", "pcd"});
-  const std::string ascii = with({"scan", "-", "-f", "pcd", "--pcd-data", "ascii"});
-  EXPECT_EQ(field(binary, "VERSION"), "0.7");
-  EXPECT_EQ(field(binary, "FIELDS"), "x y z range_m angle_deg time_ns");
-  EXPECT_EQ(field(binary, "SIZE"), "4 4 4 4 4 8");
-  EXPECT_EQ(field(binary, "TYPE"), "F F F F F I");
-  EXPECT_EQ(field(binary, "DATA"), "binary");
-  EXPECT_EQ(field(ascii, "DATA"), "ascii");
-  EXPECT_EQ(field(binary, "WIDTH"), field(binary, "POINTS"));
-  const std::size_t count = std::stoul(field(binary, "POINTS"));
-  const std::string data = binary.substr(binary.find("DATA binary\n") + 12);
-  ASSERT_EQ(data.size(), count * 28);
-  wanted_form wanted;  // of revolution 1, the first one that is whole
-  wanted.range_from_mm = 100;
-  wanted.range_to_mm = 16'000;
-  std::vector<wanted_point> points = wanted_points(simulated(), true, wanted);
-  std::erase_if(points, [](const wanted_point& p) { return p.scan != 1; });
-  ASSERT_EQ(points.size(), count);
-  std::istringstream text(ascii.substr(ascii.find("DATA ascii\n") + 11));
-  for (std::size_t i = 0; i < count; ++i) {
-    float fields[5];
-    std::int64_t time_ns = 0;
-    std::memcpy(fields, &data[i * 28], 20);
-    std::memcpy(&time_ns, &data[i * 28 + 20], 8);
-    double x = 0, y = 0, z = 0, range_m = 0, angle_deg = 0;
-    std::int64_t text_ns = 0;
-    text >> x >> y >> z >> range_m >> angle_deg >> text_ns;
-    const double bearing = points[i].angle_deg / degrees_of_radian;
-    const double range = points[i].range_mm / 1000.0;
-    ASSERT_NEAR(fields[0], range * std::cos(bearing), 5e-5);
-    ASSERT_NEAR(fields[1], range * std::sin(bearing), 5e-5);
-    ASSERT_EQ(fields[2], 0.0F);
-    ASSERT_NEAR(fields[3], range, 1e-6);
-    ASSERT_NEAR(fields[4], points[i].angle_deg, 1e-4);
-    ASSERT_EQ(time_ns, points[i].time_ns);
-    ASSERT_NEAR(x, static_cast<double>(fields[0]), 1e-6);
-    ASSERT_NEAR(y, static_cast<double>(fields[1]), 1e-6);
-    ASSERT_EQ(z, 0.0);
-    ASSERT_NEAR(range_m, static_cast<double>(fields[3]), 1e-6);
-    ASSERT_NEAR(angle_deg, static_cast<double>(fields[4]), 1e-4);
-    ASSERT_EQ(text_ns, time_ns);
-  }
-}
+class Pcd : public cli::scratch {};
 
 TEST_F(Pcd, AFileForEachRevolution) {
   EXPECT_EQ(

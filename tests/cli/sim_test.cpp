@@ -3,8 +3,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
@@ -58,36 +56,6 @@ TEST_F(Sim, DecodesWithoutASingleSkippedByte) {
   EXPECT_EQ(stats.at("suspect"), 0);
   EXPECT_NEAR(stats.at("points").get<double>(), 27'000.0, 40.0);
   for (const auto& [reason, count] : stats.at("skipped").items()) EXPECT_EQ(count, 0) << reason;
-}
-
-TEST_F(Sim, TheTruthIsWhatDecodeFinds) {
-  const std::string bytes =
-      bytes_of({"--seconds", "2", "--seed", "5", "--truth", path("truth.csv")});
-  const std::vector<std::string> truth = lines_of(cli::read_file(path("truth.csv")));
-  const std::vector<std::string> points = lines_of(run({"decode"}, bytes).out);
-  ASSERT_EQ(truth.at(0),
-            "index,time_ns,scan,first_level_deg,bearing_deg,range_mm,raw,lidar_x_m,lidar_y_m,"
-            "lidar_heading_deg");
-  ASSERT_EQ(truth.size(), points.size());
-  std::size_t returns = 0;
-  for (std::size_t i = 1; i < truth.size(); ++i) {
-    SCOPED_TRACE(truth[i] + " decoded as " + points[i]);
-    const std::vector<double> sample = numbers_of(truth[i]);
-    const std::vector<double> point = numbers_of(points[i]);
-    ASSERT_EQ(sample.size(), 10U);
-    ASSERT_EQ(sample[0], static_cast<double>(i - 1));
-    ASSERT_EQ(sample[1], point[3]);
-    ASSERT_EQ(sample[2], point[0]);
-    ASSERT_EQ(sample[6] / 4.0, point[2]);
-    const bool came_back = point[2] > 0.0;
-    // Without a return: the direction of a target infinitely far away.
-    const double bearing = came_back ? sample[4] : sample[3] - 7.9906;
-    ASSERT_LT(std::abs(std::remainder(point[1] - bearing, 360.0)), 0.02);
-    if (!came_back) continue;
-    ++returns;
-    ASSERT_NEAR(point[2], sample[5], 0.126);
-  }
-  EXPECT_GT(returns, truth.size() / 2);
 }
 
 TEST_F(Sim, OptionsReachTheScanner) {

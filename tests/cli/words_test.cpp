@@ -29,19 +29,6 @@ class UserWords : public cli::scratch {
   const std::string raw_ = path("raw.bin");
 };
 
-TEST_F(UserWords, AModelIsNamedAsOnItsLabel) {
-  const std::string wanted = run({"decode", raw_, "--model", "t-mini-plus"}).out;
-  EXPECT_THAT(wanted, HasSubstr("\n0,"));
-  for (const char* const label :
-       {"TminiPlus", "T-mini Plus", "t_mini_plus", "YDLIDAR T-MINI PLUS"}) {
-    EXPECT_EQ(run({"decode", raw_, "--model", label}).out, wanted) << label;
-    EXPECT_EQ(run({"decode", "file:" + raw_ + "?model=" + label}).out, wanted) << label;
-  }
-  const outcome simulated = run({"info", "sim:?model=YDLIDAR X4"});
-  EXPECT_EQ(simulated.code, 0) << simulated.err;
-  EXPECT_THAT(simulated.out, HasSubstr("X4"));
-}
-
 TEST_F(UserWords, AProductThatIsNotSupportedIsNamed) {
   for (const auto& [product, why] :
        {std::pair<std::string, std::string>("GS2", "it has another protocol"),
