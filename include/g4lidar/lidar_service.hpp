@@ -248,7 +248,6 @@ class G4LIDAR_API lidar_service {
  private:
   struct state;
   explicit lidar_service(std::unique_ptr<state> made);
-  [[nodiscard]] result<void> begin();
   std::unique_ptr<state> state_;
 };
 

@@ -81,6 +81,7 @@ struct lidar_service::state {
     const bool is_needed = !core.options().is_standby || core.sinks().wanted().has_any();
     rest(resting.rests(is_needed, standby::time_point::clock::now()));
   }
+  [[nodiscard]] result<void> begin();
   void supervise();
   [[nodiscard]] bool is_ended() {
     const std::lock_guard lock(mutex);
@@ -95,6 +96,20 @@ struct lidar_service::state {
   }
   std::vector<diagnostic_status> statuses_of(lidar_channel& channel, const std::string* why) const;
 };
+
+result<void> lidar_service::state::begin() {
+  if (supervisor.joinable()) return {};
+  if (is_ended()) return failure(task::starting, problem::gone, "this service, which was stopped");
+  if (const auto started = core.sinks().start(); !started) return started;
+  update_rest();
+  try {
+    supervisor = std::thread([this] { supervise(); });
+  } catch (const std::system_error& refused) {
+    return failure(task::starting, problem::system, "a thread", refused.code().value());
+  }
+  changes.begin();
+  return {};
+}
 
 void lidar_service::state::supervise() {
   std::unique_lock lock(mutex);
@@ -146,25 +161,10 @@ lidar_service::~lidar_service() { stop(); }
 
 result<void> lidar_service::start() {
   const std::lock_guard lock(state_->start_mutex);
-  const auto started = state_->supervisor.joinable() ? result<void>() : begin();
-  if (!started) return started;
+  if (const auto started = state_->begin(); !started) return started;
   for (lidar_channel& each : state_->channels) {
     if (const auto reads = each.reader().start(); !reads) return reads;
   }
-  return {};
-}
-
-result<void> lidar_service::begin() {
-  if (state_->is_ended())
-    return failure(task::starting, problem::gone, "this service, which was stopped");
-  if (const auto started = state_->core.sinks().start(); !started) return started;
-  state_->update_rest();
-  try {
-    state_->supervisor = std::thread([this] { state_->supervise(); });
-  } catch (const std::system_error& refused) {
-    return failure(task::starting, problem::system, "a thread", refused.code().value());
-  }
-  state_->changes.begin();
   return {};
 }
 

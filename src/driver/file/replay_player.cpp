@@ -9,6 +9,18 @@
 namespace g4lidar {
 namespace {
 
+/// For a recording of raw bytes: how the points that follow are made.
+recorded_event event_of(recorded_event::kind what, std::optional<zero_angle> zero,
+                        const auto& samples, connection& played) {
+  return {.what = what,
+          .baud = played.on().baud(),
+          .sample_rate_hz = samples.rate_hz,
+          .time_ns = played.now_ns(),
+          .name = played.name(),
+          .zero = zero,
+          .counts_times = samples.counts_times};
+}
+
 /// Whether the event happened when this much of the read had been processed.
 bool is_here(const recorded_event& what, const event_reader& input) noexcept {
   switch (what.what) {
@@ -67,7 +79,7 @@ result<void> replay_player::start() {
   stage_ = stage::playing;
   const auto zero = pipeline_.zero().angle();  // the user knows it
   if (zero || samples_.counts_times) {
-    record(recorded_event::kind::begun, zero);
+    stated_.record(event_of(recorded_event::kind::begun, zero, samples_, connection_));
   }
   spin_up_.forget();
   begin_spin_up();
@@ -202,7 +214,7 @@ bool replay_player::parse_bytes() {
         if (is_other) report(lidar_event::kind::other_number);
       }
       if (const auto zero = pipeline_.zero().angle(); zero != stated_.recorded_zero) {
-        record(recorded_event::kind::state, zero);
+        stated_.record(event_of(recorded_event::kind::state, zero, samples_, connection_));
       }
       const bool makes_points = pipeline_.delivers() && std::holds_alternative<packet_view>(*found);
       const bool is_first = makes_points && !std::exchange(stated_.is_zero_judged, true);
@@ -212,19 +224,6 @@ bool replay_player::parse_bytes() {
     }
   }
   return true;
-}
-
-/// For a recording of raw bytes: how the points that follow are made.
-void replay_player::record(recorded_event::kind what, std::optional<zero_angle> zero) {
-  stated_.recorded_zero = zero;
-  if (stated_.recorder == nullptr) return;
-  stated_.recorder->event({.what = what,
-                           .baud = connection_.on().baud(),
-                           .sample_rate_hz = samples_.rate_hz,
-                           .time_ns = now_ns(),
-                           .name = connection_.name(),
-                           .zero = zero,
-                           .counts_times = samples_.counts_times});
 }
 
 void replay_player::follow_delivery() {

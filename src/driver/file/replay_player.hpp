@@ -70,6 +70,10 @@ class replay_player final : public scan_source {
     std::optional<zero_angle> recorded_zero{};  ///< By `recorder`.
     bool is_zero_judged = false;                ///< Whether it is known when points begin.
 
+    void record(const recorded_event& what) {
+      recorded_zero = what.zero;
+      if (recorder != nullptr) recorder->event(what);
+    }
     void follow(const model& which) noexcept {
       identity = identity_reader(which, true);
       is_zero_judged = false;
@@ -94,7 +98,6 @@ class replay_player final : public scan_source {
   void follow_seek();
   void follow_delivery();
   void report_long_pause();
-  void record(recorded_event::kind what, std::optional<zero_angle> zero);
   [[nodiscard]] bool play_events(bool all);
   void play(const recorded_event& what);
 
