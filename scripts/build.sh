@@ -112,21 +112,21 @@ report_tests() {
     END { printf "tests: %d passed, %d failed, %d skipped\n", passed, failed, skipped }'
 }
 
-# run_tests <preset> <ctest argument>...: one more in parallel than there are processors, because
-# many tests wait most of their time. The time limit of a test is that of the preset, multiplied for
-# longer random tests (G4LIDAR_TEST_SCALE).
+# run_tests <preset> <ctest argument>...: four in parallel for each processor, because many tests wait most of their
+# time. A test of a suite that computes takes the place of three (tests/CMakeLists.txt). The time limit of a test is
+# that of the preset, multiplied for longer random tests (G4LIDAR_TEST_SCALE).
 # ctest counts a skipped test as passed: the last line does not. Each skipped test has a line
 # "SKIPPED: name: reason", each failed one a line "FAILED: name".
 run_tests() {
   local preset=$1 scale=${G4LIDAR_TEST_SCALE:-1} longer=() code=0
-  local results=$PWD/build/$preset/tests.xml
+  local results=$PWD/build/${preset%-all}/tests.xml
   shift
   if ((scale > 1)); then longer=(--timeout $((600 * scale))); fi
   # The seed of rapidcheck: fixed by default.
   export RC_PARAMS=${RC_PARAMS:-seed=${G4LIDAR_TEST_SEED:-1}}
   rm -f "$results"
   # All output is kept: the skipped tests of an executable are named in it.
-  ctest --preset "$preset" --parallel "$(($(nproc) + 1))" --output-junit "$results" \
+  ctest --preset "$preset" --parallel "$((4 * $(nproc)))" --output-junit "$results" \
     --test-output-size-passed 10000000 "${longer[@]}" "$@" || code=$?
   if [[ -e $results ]]; then
     report_tests <"$results"
