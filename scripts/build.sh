@@ -126,7 +126,7 @@ run_tests() {
   export RC_PARAMS=${RC_PARAMS:-seed=${G4LIDAR_TEST_SEED:-1}}
   rm -f "$results"
   # All output is kept: the skipped tests of an executable are named in it.
-  ctest --preset "$preset" --parallel "$((4 * $(nproc)))" --output-junit "$results" \
+  ctest --preset "$preset" --parallel "$((3 * $(nproc)))" --output-junit "$results" \
     --test-output-size-passed 10000000 "${longer[@]}" "$@" || code=$?
   if [[ -e $results ]]; then
     report_tests <"$results"
