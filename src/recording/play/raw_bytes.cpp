@@ -22,7 +22,7 @@
 #include "g4lidar/core/packet.hpp"
 #include "g4lidar/core/stream_parser.hpp"
 #include "g4lidar/detail/saturating.hpp"
-#include "g4lidar/recording/recorded_event.hpp"
+#include "g4lidar/recording/contents.hpp"
 #include "g4lidar/transport/transport.hpp"
 #include "played_file.hpp"
 #include "recording/mcap/format.hpp"
