@@ -13,11 +13,11 @@
 #include <variant>
 #include <vector>
 
-#include "g4lidar/bulk_decoder.hpp"
 #include "g4lidar/core/correction.hpp"
 #include "g4lidar/core/decode.hpp"
 #include "g4lidar/core/stream_parser.hpp"
-#include "g4lidar/deskew.hpp"
+#include "g4lidar/motion/deskew.hpp"
+#include "g4lidar/recording/bulk_decoder.hpp"
 #include "g4lidar/sim/scanner.hpp"
 #include "g4lidar/sim/world.hpp"
 #include "recode.hpp"

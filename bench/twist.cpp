@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "g4lidar/twist_estimator.hpp"
+#include "g4lidar/motion/twist_estimator.hpp"
 #include "motion/driven_lidar.hpp"
 
 namespace {

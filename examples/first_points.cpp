@@ -2,7 +2,7 @@
 // Bytes of a G4 on standard input, points on standard output.
 #include <array>
 #include <cstdio>
-#include <g4lidar/bulk_decoder.hpp>
+#include <g4lidar/recording/bulk_decoder.hpp>
 
 int main() {
   g4lidar::bulk_decoder decoder;

@@ -3,8 +3,8 @@
 // came nearer than the shortest range gives none, so an alarm also looks at the directions of mark_near().
 #include <csignal>
 #include <cstdio>
+#include <g4lidar/filter/too_near.hpp>
 #include <g4lidar/lidar.hpp>
-#include <g4lidar/too_near.hpp>
 #include <vector>
 
 volatile std::sig_atomic_t running = 1;

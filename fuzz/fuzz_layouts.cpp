@@ -15,9 +15,9 @@
 #include <variant>
 #include <vector>
 
-#include "g4lidar/bulk_decoder.hpp"
 #include "g4lidar/core/model.hpp"
 #include "g4lidar/core/stream_parser.hpp"
+#include "g4lidar/recording/bulk_decoder.hpp"
 #include "support/decode_as.hpp"
 #include "support/family_reference.hpp"
 

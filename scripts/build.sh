@@ -112,7 +112,7 @@ report_tests() {
     END { printf "tests: %d passed, %d failed, %d skipped\n", passed, failed, skipped }'
 }
 
-# run_tests <preset> <ctest argument>...: four in parallel for each processor, because many tests wait most of their
+# run_tests <preset> <ctest argument>...: three in parallel for each processor, because many tests wait most of their
 # time. A test of a suite that computes takes the place of three (tests/CMakeLists.txt). The time limit of a test is
 # that of the preset, multiplied for longer random tests (G4LIDAR_TEST_SCALE).
 # ctest counts a skipped test as passed: the last line does not. Each skipped test has a line

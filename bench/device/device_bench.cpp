@@ -28,7 +28,6 @@
 #include "g4lidar/core/command.hpp"
 #include "g4lidar/diagnostics/running_diagnosis.hpp"
 #include "g4lidar/lidar.hpp"
-#include "g4lidar/transport/connector.hpp"
 #include "g4lidar/transport/transport.hpp"
 #include "memory_connector.hpp"
 #include "pty_writer.hpp"

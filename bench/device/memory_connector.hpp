@@ -15,7 +15,6 @@
 #include "g4lidar/core/model.hpp"
 #include "g4lidar/sim/device.hpp"
 #include "g4lidar/sim/device_options.hpp"
-#include "g4lidar/transport/connector.hpp"
 #include "g4lidar/transport/transport.hpp"
 #include "pty_writer.hpp"
 

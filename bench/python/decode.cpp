@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <ctime>
 #include <fstream>
-#include <g4lidar/bulk_decoder.hpp>
+#include <g4lidar/recording/bulk_decoder.hpp>
 #include <iterator>
 #include <memory>
 #include <span>

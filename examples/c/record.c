@@ -20,7 +20,7 @@ static int record(const char* device, g4lidar_recorder* recorder) {
   if (g4lidar_open_with(&options, &lidar, &why)) return report(&why);
   if (g4lidar_start(lidar, &why) == G4LIDAR_OK) {
     const g4lidar_scan* scan;
-    while (scans < 10 && g4lidar_next_scan(lidar, 5000, &scan, &why) == G4LIDAR_OK) ++scans;
+    while (scans < 10 && g4lidar_wait_scan(lidar, 5000, &scan, &why) == G4LIDAR_OK) ++scans;
   }
   g4lidar_free(lidar);
   if (why.code != G4LIDAR_OK) return report(&why);
@@ -36,7 +36,7 @@ static int count_scans(g4lidar_lidar* lidar, int* count) {
   g4lidar_error why;
   const g4lidar_scan* scan;
   *count = 0;
-  while (g4lidar_next_scan(lidar, 5000, &scan, &why) == G4LIDAR_OK) ++*count;
+  while (g4lidar_wait_scan(lidar, 5000, &scan, &why) == G4LIDAR_OK) ++*count;
   return why.code == G4LIDAR_END_OF_INPUT ? 0 : report(&why);
 }
 

@@ -38,7 +38,7 @@ func run(device string) error {
 	}
 	for i := 0; i < 5; i++ {
 		var scan *C.g4lidar_scan
-		if err := checked(C.g4lidar_next_scan(lidar, 5000, &scan, &why), &why); err != nil {
+		if err := checked(C.g4lidar_wait_scan(lidar, 5000, &scan, &why), &why); err != nil {
 			return err
 		}
 		points := unsafe.Slice(scan.points, int(scan.point_count)) // valid until the next call

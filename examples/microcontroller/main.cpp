@@ -103,7 +103,7 @@ class obstacle_watch {
     if (scan.is_partial()) return;  // the first one, while the motor spins up
     const g4lidar::point* nearest = nullptr;
     for (const g4lidar::point& p : scan.points) {
-      // No return is not free space: see too_near.hpp.
+      // No return is not free space: see filter/too_near.hpp.
       if (p.is_no_return() || p.is_too_near()) continue;
       if (nearest == nullptr || p.range_mm < nearest->range_mm) nearest = &p;
     }

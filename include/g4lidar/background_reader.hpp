@@ -14,7 +14,7 @@
 #include "g4lidar/detail/api.hpp"
 #include "g4lidar/error.hpp"
 #include "g4lidar/lidar.hpp"
-#include "g4lidar/setting_table.hpp"
+#include "g4lidar/options/option_table.hpp"
 
 namespace g4lidar {
 

@@ -14,9 +14,9 @@
 
 #include "g4lidar/core/model.hpp"
 #include "g4lidar/detail/api.hpp"
-#include "g4lidar/device_information.hpp"
 #include "g4lidar/error.hpp"
-#include "g4lidar/recognition.hpp"
+#include "g4lidar/settings.hpp"
+#include "g4lidar/transport/recognition.hpp"
 #include "g4lidar/transport/transport.hpp"
 
 namespace g4lidar {

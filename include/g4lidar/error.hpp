@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Errors: what was being done, what went wrong, and what to try.
+// Errors: what was being done, what went wrong, and what to try; and text that is safe to print.
 #pragma once
 
 #include <array>
@@ -84,7 +84,7 @@ enum class error_detail : std::uint8_t {
   resting,         ///< timeout: the motor stands, because background_reader::rest() was called.
   of_file,         ///< timeout: no scan of the file that is played was due.
   not_sent,        ///< timeout: the port did not accept the bytes of a command.
-  other_source,    ///< bad_option: the option is for another kind of source (source.hpp).
+  other_source,    ///< bad_option: the option is for another kind of source (transport/source.hpp).
   several_models,  ///< bad_file: the parts of a recording state different models of lidar.
   other_samples,  ///< other_device: packets whose samples have another size than those of the named model.
   other_maker,  ///< other_device: packets of another maker, or of another kind of device.
@@ -187,5 +187,11 @@ class view_result : public result<View> {
                                                    error_detail detail = {}) noexcept {
   return tl::unexpected<error>(error(doing, code, subject, system_errno, detail));
 }
+
+/// `text` as one line without control characters: printable ASCII and other characters of valid
+/// UTF-8 unchanged, a backslash as `\\`, each other byte (control characters, C1 controls, invalid
+/// UTF-8) as `\x1B`. The result contains no byte that a terminal interprets. *Pure*, allocates the
+/// result.
+[[nodiscard]] G4LIDAR_API std::string printable(std::string_view text);
 
 }  // namespace g4lidar

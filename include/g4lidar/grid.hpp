@@ -24,7 +24,7 @@ enum class grid_pick : std::uint8_t {
 
 /// What a direction without return becomes in a grid. That nothing came back does not mean that the way
 /// is free: what is nearer than the shortest range (0.28 m at 9 kHz) may give no return either. See
-/// too_near.hpp.
+/// filter/too_near.hpp.
 enum class no_return_as : std::uint8_t {
   infinity,  ///< +infinity, as REP 117 has it for "no return within the range".
   nan,       ///< NaN: nothing is known.

@@ -11,20 +11,21 @@
 #include <span>
 #include <string_view>
 #include <type_traits>
+#include <utility>
 #include <variant>
+#include <vector>
 
 #include "g4lidar/core/point_ring.hpp"
 #include "g4lidar/core/request.hpp"
 #include "g4lidar/detail/api.hpp"
-#include "g4lidar/device_information.hpp"
 #include "g4lidar/error.hpp"
-#include "g4lidar/lidar_counts.hpp"
 #include "g4lidar/lidar_event.hpp"
 #include "g4lidar/lidar_options.hpp"
 #include "g4lidar/point.hpp"
-#include "g4lidar/recognition.hpp"
 #include "g4lidar/recording/player.hpp"
 #include "g4lidar/scan.hpp"
+#include "g4lidar/settings.hpp"
+#include "g4lidar/transport/recognition.hpp"
 
 namespace g4lidar {
 
@@ -53,7 +54,7 @@ class G4LIDAR_API lidar {
   /// The unit of timeouts. A value below zero counts as zero; the longest is a year.
   using milliseconds = std::chrono::milliseconds;
 
-  /// Opens the source that `options.device` names (source.hpp) and queries the identity of the lidar. A
+  /// Opens the source that `options.device` names (transport/source.hpp) and queries the identity of the lidar. A
   /// device that is scanning is stopped first. For at most options.device_wait it waits, and begins again, until
   /// a lidar answers or options.is_cancelled() ends it; the times below are those of an attempt. Takes
   /// about 60 ms with a healthy device, and at most 3 s with one fault; if many bytes are damaged, at
@@ -272,5 +273,62 @@ class scan_range {
 };
 
 inline scan_range lidar::scans(milliseconds timeout) & noexcept { return {*this, timeout}; }
+
+/// A loop over scans that waits in slices, because it also does other things: the rule of lidar::wait_scan(), which is
+/// one such wait. *Single thread*: that of the lidar.
+class G4LIDAR_API scan_loop {
+ public:
+  /// `timeout`: for each scan, as soon as it is due.
+  explicit scan_loop(lidar::milliseconds timeout) noexcept : timeout_(timeout) {}
+
+  /// Waits at most `slice` for the next scan; valid as that of lidar::wait_scan(). Nothing: none has come, and the loop
+  /// goes on. Errors, which end the loop: as lidar::wait_scan(). After cancelled the next call continues the same wait.
+  [[nodiscard]] result<std::optional<scan>> wait(lidar& from, lidar::milliseconds slice);
+  /// How long from now a wait for the next scan can last; milliseconds::max() without limit.
+  [[nodiscard]] lidar::milliseconds left(const lidar& from) const noexcept;
+
+ private:
+  lidar::milliseconds timeout_;
+  std::optional<std::int64_t> deadline_ns_;  // of the next scan, by the clock of timeouts
+};
+
+/// A copy of a scan that owns its points. *Allocates* when it is constructed and copied, and throws
+/// only what std::vector throws.
+class owned_scan {
+ public:
+  /// Without points.
+  owned_scan() = default;
+  /// A copy of `source` and its points.
+  explicit owned_scan(const scan& source) { *this = source; }
+  /// The same; memory that is large enough is reused.
+  owned_scan& operator=(const scan& source) {
+    points_.assign(source.begin(), source.end());
+    about_ = source;
+    about_.points = {};
+    return *this;
+  }
+
+  /// As a scan; valid until this object changes or is destroyed.
+  [[nodiscard]] scan view() const& noexcept {
+    scan made = about_;
+    made.points = points_;
+    return made;
+  }
+  scan view() const&& = delete;
+  /// The same.
+  [[nodiscard]] operator scan() const& noexcept { return view(); }
+  operator scan() const&& = delete;
+
+  /// The points, in the order in which they were measured. They may be changed.
+  [[nodiscard]] std::vector<point>& points() & noexcept { return points_; }
+  /// The same.
+  [[nodiscard]] const std::vector<point>& points() const& noexcept { return points_; }
+  /// The points of a temporary object.
+  [[nodiscard]] std::vector<point> points() && noexcept { return std::move(points_); }
+
+ private:
+  std::vector<point> points_;
+  scan about_;
+};
 
 }  // namespace g4lidar

@@ -48,7 +48,7 @@ struct lidar_tuning {
 /// device has it; one that is given is set at each start, after a reconnect, and when the device seems
 /// to have rebooted.
 struct lidar_options {
-  /// Which lidar, in the words of source.hpp: empty for the only lidar; `/dev/ttyUSB0`; `sim:`; ...
+  /// Which lidar, in the words of transport/source.hpp: empty for the only lidar; `/dev/ttyUSB0`; `sim:`; ...
   std::string device{};
   /// How long open() waits for a device that is not there yet, or cannot be opened yet: after an error that may pass
   /// (error::may_pass()) it tries again twice a second. milliseconds::max(): without limit.

@@ -12,7 +12,7 @@
 #include <type_traits>
 
 #include "g4lidar/core/correction.hpp"
-#include "g4lidar/detail/cpp20.hpp"
+#include "g4lidar/detail/api.hpp"
 #include "g4lidar/detail/saturating.hpp"
 
 namespace g4lidar {

@@ -23,11 +23,11 @@ enum class point_flags : std::uint8_t {
   none = 0,
   no_return = 1,  ///< Nothing came back: `range_mm` is 0 and not a range, and the way not free.
   too_near = 2,   ///< Below the model's shortest range, 100 mm for a G4: not reliable.
-  revolution_start = 4,   ///< The sample of a zero packet, the first one of its revolution.
-  not_deskewed = 8,       ///< deskew() left it where it was: its time or the motion is not known.
-  unlikely = 16,          ///< Its packet or its neighbours contradict it; see plausibility.hpp.
-  isolated = 32,          ///< No other return is near; set by mark_isolated().
-  veiling = 64,           ///< Between two surfaces, where nothing is; set by mark_veiling().
+  revolution_start = 4,  ///< The sample of a zero packet, the first one of its revolution.
+  not_deskewed = 8,      ///< deskew() left it where it was: its time or the motion is not known.
+  unlikely = 16,  ///< Its packet or its neighbours contradict it; see filter/plausibility.hpp.
+  isolated = 32,  ///< No other return is near; set by mark_isolated().
+  veiling = 64,   ///< Between two surfaces, where nothing is; set by mark_veiling().
   may_be_too_near = 128,  ///< Without return, perhaps of something too near; set by mark_near().
 };
 
@@ -67,7 +67,7 @@ struct point {
 
   /// Whether nothing came back; then `range_mm` is not a range. The way is not free for it: a target
   /// that is too near gives no return either, nor does one that is too far, black, or a mirror. See
-  /// too_near.hpp.
+  /// filter/too_near.hpp.
   [[nodiscard]] constexpr bool is_no_return() const noexcept {
     return (flags & point_flags::no_return) != point_flags::none;
   }

@@ -12,13 +12,12 @@
 #include "g4lidar/core/angle.hpp"
 #include "g4lidar/detail/api.hpp"
 #include "g4lidar/filter.hpp"
+#include "g4lidar/filter/outliers.hpp"
+#include "g4lidar/filter/too_near.hpp"
 #include "g4lidar/motion.hpp"
-#include "g4lidar/outliers.hpp"
+#include "g4lidar/motion/twist_estimator.hpp"
 #include "g4lidar/point.hpp"
-#include "g4lidar/polygon.hpp"
 #include "g4lidar/scan.hpp"
-#include "g4lidar/too_near.hpp"
-#include "g4lidar/twist_estimator.hpp"
 
 namespace g4lidar {
 
@@ -134,6 +133,23 @@ class G4LIDAR_API scan_shaper {
   product for_grid_;
   std::size_t outside_ = 0;
   std::uint64_t not_deskewed_ = 0;
+};
+
+/// The poses of the last 5 s, for scan_shaper::shape(). *Single thread.* Throws only what std::vector throws.
+class G4LIDAR_API odometry_path {
+ public:
+  /// A pose that is not after the last one begins a new path.
+  void add(const stamped_odometry& now);
+  /// The poses, times ascending. If the last one is at most 0.2 s before `time_ns`, one more at that time, as if the
+  /// robot had kept its velocity. Valid until the next call.
+  [[nodiscard]] std::span<const stamped_pose> until(std::int64_t time_ns);
+  /// The last one that was added.
+  [[nodiscard]] const std::optional<stamped_odometry>& newest() const noexcept { return newest_; }
+
+ private:
+  std::optional<stamped_odometry> newest_;
+  std::vector<stamped_pose> poses_;
+  bool is_last_guessed_ = false;
 };
 
 }  // namespace g4lidar

@@ -2,7 +2,7 @@
 // The version of the library; the build system and the packages read it from this file.
 #pragma once
 
-#include "g4lidar/detail/cpp20.hpp"
+#include "g4lidar/detail/api.hpp"
 
 #define G4LIDAR_VERSION_MAJOR 0
 #define G4LIDAR_VERSION_MINOR 1

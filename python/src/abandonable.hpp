@@ -15,7 +15,7 @@
 #include <thread>
 #include <utility>
 
-#include "g4lidar/transport/forwarding.hpp"
+#include "g4lidar/transport/transport.hpp"
 #include "gil.hpp"
 #include "interruption.hpp"
 

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "errors.hpp"
-#include "g4lidar/bulk_decoder.hpp"
+#include "g4lidar/recording/bulk_decoder.hpp"
 #include "gil.hpp"
 #include "scan.hpp"
 #include "settings.hpp"

@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "errors.hpp"
-#include "g4lidar/diagnostics/diagnostic_run.hpp"
+#include "g4lidar/diagnostics/diagnosis.hpp"
 #include "gil.hpp"
 #include "simulator.hpp"
 #include "words.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "errors.hpp"
 
-#include "g4lidar/export/printable.hpp"
+#include "g4lidar/error.hpp"
 #include "g4lidar/lidar_options.hpp"
 #include "gil.hpp"
 

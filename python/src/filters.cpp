@@ -14,9 +14,9 @@
 #include <vector>
 
 #include "errors.hpp"
-#include "g4lidar/export/mask.hpp"
-#include "g4lidar/outliers.hpp"
-#include "g4lidar/plausibility.hpp"
+#include "g4lidar/filter/outliers.hpp"
+#include "g4lidar/filter/plausibility.hpp"
+#include "g4lidar/options/filter_text.hpp"
 #include "g4lidar/scan_shaper.hpp"
 #include "scan.hpp"
 #include "words.hpp"
@@ -158,33 +158,33 @@ void bind_shaper(nb::module_& module) {
   nb::class_<shaper> made(
       module, "ScanShaper",
       "Marks, filters and deskews the scans of one lidar. One thread at a time.");
-  made.def("__init__", &make_shaper, nb::kw_only(), "field_of_view"_a = nb::none(),
-           "ignored_sectors"_a = std::vector<angles>{}, "masks"_a = std::vector<outline>{},
-           "least_range_mm"_a = everything.least_range_mm,
-           "greatest_range_mm"_a = everything.greatest_range_mm, "returns_only"_a = false,
-           "trusted_only"_a = false, "excluded"_a = 0, "frame"_a = frame::robot,
-           "speckle"_a = false, "edges"_a = false, "near"_a = false,
-           "shortest_mm"_a = near.shortest_mm, "near_revolutions"_a = near.revolutions,
-           "deskew"_a = deskewing::none, "mount"_a = mounting{}, "restamps"_a = false,
-           "for_merging"_a = false,
-           "Points are kept that meet every condition. Sectors are pairs of degrees (from, to), in "
-           "the sense in which the angles of `frame` grow: in 'robot', counter-clockwise from "
-           "straight ahead. `masks`: polygons of corners (x, y) in metres in the frame 'robot', "
-           "whose returns are left out. Ranges in millimetres, both limits included. "
-           "`returns_only` leaves out points without return, `trusted_only` those that are too "
-           "near, "
-           "`excluded` those with one of these flags (PointFlag). `speckle` and `edges` leave out "
-           "what mark_isolated() and mark_veiling() flag. `near` flags points without return as "
-           "PointFlag.MAY_BE_TOO_NEAR if, in the last `near_revolutions` (0: until a return "
-           "comes), a return came from their direction from less than twice `shortest_mm` (0: by "
-           "the model; 280 of a G4 at "
-           "9 kHz, 260 at 8, 100 at 4), and none that is farther since; too_near.hpp has the "
-           "numbers of what it misses and of false alarms. `deskew`: 'by_path' moves points to "
-           "where they would have been seen at the time of the first one, by the poses of the "
-           "robot on which the lidar has the pose `mount`; 'by_scans' by a TwistEstimator. "
-           "Points whose motion is not known stay, flagged PointFlag.NOT_DESKEWED. `restamps` "
-           "gives the others the time of the first one. `for_merging`: only the twist is "
-           "estimated, because merge_scans() deskews.");
+  made.def(
+      "__init__", &make_shaper, nb::kw_only(), "field_of_view"_a = nb::none(),
+      "ignored_sectors"_a = std::vector<angles>{}, "masks"_a = std::vector<outline>{},
+      "least_range_mm"_a = everything.least_range_mm,
+      "greatest_range_mm"_a = everything.greatest_range_mm, "returns_only"_a = false,
+      "trusted_only"_a = false, "excluded"_a = 0, "frame"_a = frame::robot, "speckle"_a = false,
+      "edges"_a = false, "near"_a = false, "shortest_mm"_a = near.shortest_mm,
+      "near_revolutions"_a = near.revolutions, "deskew"_a = deskewing::none, "mount"_a = mounting{},
+      "restamps"_a = false, "for_merging"_a = false,
+      "Points are kept that meet every condition. Sectors are pairs of degrees (from, to), in "
+      "the sense in which the angles of `frame` grow: in 'robot', counter-clockwise from "
+      "straight ahead. `masks`: polygons of corners (x, y) in metres in the frame 'robot', "
+      "whose returns are left out. Ranges in millimetres, both limits included. "
+      "`returns_only` leaves out points without return, `trusted_only` those that are too "
+      "near, "
+      "`excluded` those with one of these flags (PointFlag). `speckle` and `edges` leave out "
+      "what mark_isolated() and mark_veiling() flag. `near` flags points without return as "
+      "PointFlag.MAY_BE_TOO_NEAR if, in the last `near_revolutions` (0: until a return "
+      "comes), a return came from their direction from less than twice `shortest_mm` (0: by "
+      "the model; 280 of a G4 at "
+      "9 kHz, 260 at 8, 100 at 4), and none that is farther since; filter/too_near.hpp has the "
+      "numbers of what it misses and of false alarms. `deskew`: 'by_path' moves points to "
+      "where they would have been seen at the time of the first one, by the poses of the "
+      "robot on which the lidar has the pose `mount`; 'by_scans' by a TwistEstimator. "
+      "Points whose motion is not known stay, flagged PointFlag.NOT_DESKEWED. `restamps` "
+      "gives the others the time of the first one. `for_merging`: only the twist is "
+      "estimated, because merge_scans() deskews.");
   bind_shaping_of(made);
 }
 

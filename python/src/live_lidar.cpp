@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
+#include "g4lidar/core/wall_clock.hpp"
 #include "g4lidar/transport/transport.hpp"
-#include "g4lidar/wall_clock.hpp"
 #include "reading_thread.hpp"
 
 namespace g4lidar::python {

@@ -19,7 +19,6 @@
 #include "g4lidar/lidar.hpp"
 #include "g4lidar/point.hpp"
 #include "g4lidar/recording/writer.hpp"
-#include "g4lidar/scan_loop.hpp"
 #include "interruption.hpp"
 #include "notice.hpp"
 #include "process.hpp"

@@ -21,10 +21,10 @@
 
 #include "abandonable.hpp"
 #include "g4lidar/discovery.hpp"
-#include "g4lidar/option_table.hpp"
-#include "g4lidar/source.hpp"
-#include "g4lidar/transport/connector.hpp"
+#include "g4lidar/options/option_table.hpp"
 #include "g4lidar/transport/serial_port.hpp"
+#include "g4lidar/transport/source.hpp"
+#include "g4lidar/transport/transport.hpp"
 #include "interruption.hpp"
 #include "live_lidar.hpp"
 #include "settings.hpp"

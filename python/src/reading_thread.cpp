@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "g4lidar/wall_clock.hpp"
+#include "g4lidar/core/wall_clock.hpp"
 
 namespace g4lidar::python {
 namespace {

@@ -8,7 +8,7 @@
 #include <map>
 #include <variant>
 
-#include "g4lidar/core/session/model_requests.hpp"
+#include "g4lidar/core/request.hpp"
 #include "g4lidar/lidar_options.hpp"
 
 namespace g4lidar::python {

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "errors.hpp"
-#include "g4lidar/setting_table.hpp"
+#include "g4lidar/options/option_table.hpp"
 #include "live_lidar.hpp"
 #include "words.hpp"
 

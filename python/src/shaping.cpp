@@ -20,9 +20,9 @@
 #include <vector>
 
 #include "errors.hpp"
-#include "g4lidar/deskew.hpp"
 #include "g4lidar/merge.hpp"
-#include "g4lidar/twist_estimator.hpp"
+#include "g4lidar/motion/deskew.hpp"
+#include "g4lidar/motion/twist_estimator.hpp"
 #include "scan.hpp"
 #include "words.hpp"
 

@@ -12,8 +12,8 @@
 #include <string>
 #include <string_view>
 
+#include "g4lidar/filter/outliers.hpp"
 #include "g4lidar/grid.hpp"
-#include "g4lidar/outliers.hpp"
 #include "g4lidar/point.hpp"
 #include "g4lidar/recording/writer.hpp"
 #include "g4lidar/scan_shaper.hpp"

@@ -10,10 +10,10 @@
 #include <memory>
 #include <string>
 
-#include "g4lidar/device_information.hpp"
 #include "g4lidar/lidar.hpp"
 #include "g4lidar/recording/reader.hpp"
 #include "g4lidar/recording/writer.hpp"
+#include "g4lidar/settings.hpp"
 #include "simulation.hpp"
 
 namespace g4lidar::c {

@@ -7,10 +7,10 @@
 #include <type_traits>
 
 #include "g4lidar/cartesian.hpp"
+#include "g4lidar/filter.hpp"
 #include "g4lidar/grid.hpp"
 #include "g4lidar/motion.hpp"
 #include "g4lidar/point.hpp"
-#include "g4lidar/polygon.hpp"
 #include "g4lidar/scan_shaper.hpp"
 #include "g4lidar/version.hpp"  // a different version would be a macro that is defined twice
 #include "options.hpp"

@@ -8,9 +8,9 @@
 #include <variant>
 
 #include "border.hpp"
+#include "g4lidar/core/wall_clock.hpp"
 #include "g4lidar/detail/saturating.hpp"
-#include "g4lidar/setting_table.hpp"
-#include "g4lidar/wall_clock.hpp"
+#include "g4lidar/options/option_table.hpp"
 #include "handles.hpp"
 
 using namespace g4lidar;

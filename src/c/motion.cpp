@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "border.hpp"
-#include "g4lidar/twist_estimator.hpp"
+#include "g4lidar/motion/twist_estimator.hpp"
 #include "motion.hpp"
 
 using namespace g4lidar;

@@ -12,10 +12,10 @@
 
 #include "border.hpp"
 #include "core/number_text.hpp"
-#include "g4lidar/recording/replay.hpp"
-#include "g4lidar/setting_table.hpp"
-#include "g4lidar/source.hpp"
-#include "g4lidar/wall_clock.hpp"
+#include "g4lidar/core/wall_clock.hpp"
+#include "g4lidar/options/option_table.hpp"
+#include "g4lidar/recording/reader.hpp"
+#include "g4lidar/transport/source.hpp"
 #include "handles.hpp"
 
 namespace g4lidar::c {

@@ -9,8 +9,8 @@
 
 #include "border.hpp"
 #include "g4lidar/cartesian.hpp"
-#include "g4lidar/export/mask.hpp"
 #include "g4lidar/grid.hpp"
+#include "g4lidar/options/filter_text.hpp"
 #include "ranges.hpp"
 
 using namespace g4lidar;

@@ -9,10 +9,10 @@
 #include <optional>
 
 #include "border.hpp"
+#include "g4lidar/filter/outliers.hpp"
+#include "g4lidar/filter/too_near.hpp"
 #include "g4lidar/grid.hpp"
-#include "g4lidar/outliers.hpp"
 #include "g4lidar/point.hpp"
-#include "g4lidar/too_near.hpp"
 #include "options.hpp"
 
 namespace g4lidar::c {

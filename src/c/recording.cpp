@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "border.hpp"
-#include "g4lidar/recording/replay.hpp"
+#include "g4lidar/recording/reader.hpp"
 #include "handles.hpp"
 #include "motion.hpp"
 #include "ranges.hpp"

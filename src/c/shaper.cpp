@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "border.hpp"
-#include "g4lidar/export/mask.hpp"
+#include "g4lidar/options/filter_text.hpp"
 #include "g4lidar/scan_shaper.hpp"
 #include "motion.hpp"
 #include "ranges.hpp"

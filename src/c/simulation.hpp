@@ -14,7 +14,7 @@
 #include "g4lidar/sim/pty_port.hpp"
 #include "g4lidar/sim/virtual_port.hpp"
 #include "g4lidar/sim/world.hpp"
-#include "g4lidar/transport/connector.hpp"
+#include "g4lidar/transport/transport.hpp"
 
 namespace g4lidar::c {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The bulk decoder: from the parser to the kernels, and the selection of the kernels.
-#include "g4lidar/bulk_decoder.hpp"
+#include "g4lidar/recording/bulk_decoder.hpp"
 
 #include <algorithm>
 #include <array>

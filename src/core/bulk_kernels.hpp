@@ -6,12 +6,12 @@
 #include <cstdint>
 #include <span>
 
-#include "g4lidar/bulk_decoder.hpp"
 #include "g4lidar/cartesian.hpp"
 #include "g4lidar/core/model.hpp"
 #include "g4lidar/core/packet.hpp"
 #include "g4lidar/core/sensor_clock.hpp"
 #include "g4lidar/point.hpp"
+#include "g4lidar/recording/bulk_decoder.hpp"
 
 namespace g4lidar::bulk {
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <utility>
 
-#include "g4lidar/detail/enumerators.hpp"
+#include "core/enumerators.hpp"
 #include "one_of.hpp"
 #include "printable_text.hpp"
 

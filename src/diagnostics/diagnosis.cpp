@@ -6,8 +6,8 @@
 #include <cmath>
 #include <initializer_list>
 
+#include "core/enumerators.hpp"
 #include "core/number_text.hpp"
-#include "g4lidar/detail/enumerators.hpp"
 
 namespace g4lidar {
 namespace {

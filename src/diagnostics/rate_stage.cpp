@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/number_text.hpp"
-#include "g4lidar/setting_table.hpp"
+#include "g4lidar/options/option_table.hpp"
 #include "stages.hpp"
 
 namespace g4lidar {

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "g4lidar/core/bytes.hpp"
-#include "g4lidar/core/session/model_requests.hpp"
+#include "g4lidar/core/request.hpp"
 
 namespace g4lidar {
 namespace {

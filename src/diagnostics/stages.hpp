@@ -12,12 +12,12 @@
 #include "g4lidar/core/layout_recogniser.hpp"
 #include "g4lidar/core/model.hpp"
 #include "g4lidar/core/response.hpp"
-#include "g4lidar/diagnostics/diagnostic_run.hpp"
+#include "g4lidar/diagnostics/diagnosis.hpp"
 #include "g4lidar/filter.hpp"
-#include "g4lidar/transport/tcp_port.hpp"
 #include "reply_statistics.hpp"
 #include "stream_statistics.hpp"
 #include "survey/stream_survey.hpp"
+#include "transport/tcp_port.hpp"
 
 namespace g4lidar {
 

@@ -8,7 +8,7 @@
 #include <string_view>
 
 #include "g4lidar/discovery.hpp"
-#include "g4lidar/transport/tcp_port.hpp"
+#include "transport/tcp_port.hpp"
 
 namespace g4lidar {
 

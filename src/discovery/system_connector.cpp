@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "g4lidar/transport/serial_port.hpp"
-#include "g4lidar/transport/tcp_port.hpp"
 #include "transport/port_holder.hpp"
+#include "transport/tcp_port.hpp"
 
 namespace g4lidar {
 namespace {

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "g4lidar/discovery.hpp"
-#include "g4lidar/transport/connector.hpp"
+#include "g4lidar/transport/transport.hpp"
 #include "path_watch.hpp"
 #include "port_words.hpp"
 #include "transport/fd_port.hpp"

@@ -9,10 +9,9 @@
 #include <cstdint>
 #include <string_view>
 
+#include "core/enumerators.hpp"
 #include "g4lidar/core/model.hpp"
 #include "g4lidar/core/request.hpp"
-#include "g4lidar/core/session/model_requests.hpp"
-#include "g4lidar/detail/enumerators.hpp"
 
 namespace g4lidar {
 

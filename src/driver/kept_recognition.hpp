@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "discovery/fitting_models.hpp"
-#include "g4lidar/device_information.hpp"
-#include "g4lidar/recognition.hpp"
-#include "g4lidar/recording/recorded_event.hpp"
+#include "g4lidar/recording/contents.hpp"
+#include "g4lidar/settings.hpp"
+#include "g4lidar/transport/recognition.hpp"
 #include "link/sample_size_watch.hpp"
 
 namespace g4lidar {

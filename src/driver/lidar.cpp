@@ -10,14 +10,14 @@
 #include <utility>
 #include <vector>
 
+#include "core/enumerators.hpp"
 #include "core/number_text.hpp"
 #include "driver.hpp"
 #include "g4lidar/core/model_choice.hpp"
-#include "g4lidar/detail/enumerators.hpp"
-#include "g4lidar/source.hpp"
-#include "g4lidar/transport/tcp_port.hpp"
+#include "g4lidar/transport/source.hpp"
 #include "option_problems.hpp"
 #include "outcome_error.hpp"
+#include "transport/tcp_port.hpp"
 
 namespace g4lidar {
 namespace {

@@ -8,8 +8,8 @@
 
 #include "core/number_text.hpp"
 #include "error_context.hpp"
-#include "g4lidar/core/session/model_requests.hpp"
-#include "g4lidar/setting_table.hpp"
+#include "g4lidar/core/request.hpp"
+#include "g4lidar/options/option_table.hpp"
 
 namespace g4lidar {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "g4lidar/odometry_feed.hpp"
+#include "g4lidar/motion/odometry_feed.hpp"
 
 #include <algorithm>
 #include <limits>

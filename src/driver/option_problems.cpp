@@ -7,9 +7,9 @@
 #include <string_view>
 
 #include "error_context.hpp"
-#include "g4lidar/core/session/model_requests.hpp"
-#include "g4lidar/option_table.hpp"
-#include "g4lidar/source.hpp"
+#include "g4lidar/core/request.hpp"
+#include "g4lidar/options/option_table.hpp"
+#include "g4lidar/transport/source.hpp"
 #include "options/option_access.hpp"
 
 namespace g4lidar {

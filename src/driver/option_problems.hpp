@@ -9,9 +9,9 @@
 
 #include "g4lidar/error.hpp"
 #include "g4lidar/lidar_options.hpp"
-#include "g4lidar/option_table.hpp"
-#include "g4lidar/recognition.hpp"
-#include "g4lidar/transport/connector.hpp"
+#include "g4lidar/options/option_table.hpp"
+#include "g4lidar/transport/recognition.hpp"
+#include "g4lidar/transport/transport.hpp"
 
 namespace g4lidar {
 

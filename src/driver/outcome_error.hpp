@@ -13,7 +13,7 @@
 #include "error_context.hpp"
 #include "g4lidar/core/model.hpp"
 #include "g4lidar/error.hpp"
-#include "g4lidar/setting_table.hpp"
+#include "g4lidar/options/option_table.hpp"
 #include "link/connection.hpp"
 #include "survey/unrecognised_bytes.hpp"
 

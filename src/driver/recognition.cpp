@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "g4lidar/recognition.hpp"
+#include "g4lidar/transport/recognition.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "g4lidar/scan_loop.hpp"
+#include "g4lidar/lidar.hpp"
 
 #include <algorithm>
 #include <optional>

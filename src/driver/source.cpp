@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "g4lidar/source.hpp"
+#include "g4lidar/transport/source.hpp"
 
 #include <sys/stat.h>
 
@@ -11,17 +11,16 @@
 #include "discovery/port_words.hpp"
 #include "discovery/system_connector.hpp"
 #include "g4lidar/recording/raw_bytes.hpp"
-#include "g4lidar/recording/replay.hpp"
-#include "g4lidar/transport/forwarding.hpp"
-#include "g4lidar/transport/tcp_port.hpp"
+#include "g4lidar/recording/reader.hpp"
+#include "g4lidar/transport/transport.hpp"
 #include "option_problems.hpp"
 #include "recording/new_file.hpp"
 #include "recording/play/byte_survey.hpp"
+#include "transport/tcp_port.hpp"
 #if defined(G4LIDAR_HAS_SIM)
 #include <variant>
 
 #include "g4lidar/sim/setup.hpp"
-#include "g4lidar/sim/simulated_source.hpp"
 #endif
 
 namespace g4lidar {

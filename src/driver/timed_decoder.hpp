@@ -10,15 +10,15 @@
 #include <utility>
 
 #include "core/bulk_kernels.hpp"
+#include "core/sample_clock.hpp"
 #include "g4lidar/core/clock/sample_counter.hpp"
 #include "g4lidar/core/decode.hpp"
 #include "g4lidar/core/model.hpp"
-#include "g4lidar/core/sample_clock.hpp"
+#include "g4lidar/core/reply_watch.hpp"
 #include "g4lidar/core/sensor_clock.hpp"
 #include "g4lidar/core/stream_parser.hpp"
-#include "g4lidar/core/zero_offset.hpp"
 #include "g4lidar/detail/saturating.hpp"
-#include "g4lidar/plausibility.hpp"
+#include "g4lidar/filter/plausibility.hpp"
 
 namespace g4lidar {
 

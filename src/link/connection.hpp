@@ -9,7 +9,7 @@
 #include <string>
 #include <string_view>
 
-#include "g4lidar/transport/connector.hpp"
+#include "g4lidar/transport/transport.hpp"
 #include "transport/ready_handle.hpp"
 
 namespace g4lidar {

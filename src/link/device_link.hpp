@@ -8,8 +8,8 @@
 
 #include "event_reader.hpp"
 #include "g4lidar/core/session.hpp"
-#include "g4lidar/transport/tcp_port.hpp"
 #include "g4lidar/transport/transport.hpp"
+#include "transport/tcp_port.hpp"
 
 namespace g4lidar {
 

@@ -10,7 +10,7 @@
 #include "g4lidar/core/ct_information.hpp"
 #include "g4lidar/core/model.hpp"
 #include "g4lidar/core/stream_parser.hpp"
-#include "g4lidar/device_information.hpp"
+#include "g4lidar/settings.hpp"
 
 namespace g4lidar {
 

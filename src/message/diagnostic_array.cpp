@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "g4lidar/message/diagnostic_array.hpp"
+#include "g4lidar/message/ros_messages.hpp"
 
 #include <string_view>
 

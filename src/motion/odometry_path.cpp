@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "g4lidar/odometry_path.hpp"
+#include "g4lidar/scan_shaper.hpp"
 
 #include <utility>
 

@@ -9,8 +9,8 @@
 #include <span>
 
 #include "g4lidar/motion.hpp"
+#include "g4lidar/motion/twist_estimator.hpp"
 #include "g4lidar/point.hpp"
-#include "g4lidar/twist_estimator.hpp"
 
 namespace g4lidar {
 

@@ -3,7 +3,7 @@
 
 #include <utility>
 
-#include "g4lidar/deskew.hpp"
+#include "g4lidar/motion/deskew.hpp"
 
 namespace g4lidar {
 

@@ -6,7 +6,7 @@
 #include <cstddef>
 
 #include "g4lidar/motion.hpp"
-#include "g4lidar/twist_estimator.hpp"
+#include "g4lidar/motion/twist_estimator.hpp"
 #include "motion/line_map.hpp"
 #include "motion/scan_points.hpp"
 #include "motion/symmetric_3.hpp"

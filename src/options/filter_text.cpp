@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "g4lidar/filter_text.hpp"
+#include "g4lidar/options/filter_text.hpp"
 
 #include <algorithm>
 #include <array>
@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "core/number_text.hpp"
-#include "g4lidar/option_table.hpp"
+#include "g4lidar/options/option_table.hpp"
 
 namespace g4lidar {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "core/number_text.hpp"
 #include "g4lidar/lidar_options.hpp"
-#include "g4lidar/option_table.hpp"
+#include "g4lidar/options/option_table.hpp"
 
 namespace g4lidar {
 

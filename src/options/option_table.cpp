@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "g4lidar/option_table.hpp"
+#include "g4lidar/options/option_table.hpp"
 
 #include <algorithm>
 #include <array>

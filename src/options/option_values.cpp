@@ -7,7 +7,7 @@
 #include <span>
 #include <string>
 
-#include "g4lidar/core/session/model_requests.hpp"
+#include "g4lidar/core/request.hpp"
 #include "option_access.hpp"
 
 namespace g4lidar {

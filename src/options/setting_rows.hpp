@@ -7,8 +7,8 @@
 #include <cstdint>
 #include <string_view>
 
-#include "g4lidar/core/session/model_requests.hpp"
-#include "g4lidar/setting_table.hpp"
+#include "g4lidar/core/request.hpp"
+#include "g4lidar/options/option_table.hpp"
 
 namespace g4lidar {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "g4lidar/setting_table.hpp"
+#include "g4lidar/options/option_table.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,7 @@
 
 #include "core/number_text.hpp"
 #include "driver/error_context.hpp"
-#include "g4lidar/core/session/model_requests.hpp"
+#include "g4lidar/core/request.hpp"
 #include "setting_rows.hpp"
 
 namespace g4lidar {

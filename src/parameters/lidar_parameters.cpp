@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "g4lidar/lidar_parameters.hpp"
+#include "g4lidar/options/lidar_parameters.hpp"
 
 #include <algorithm>
 #include <vector>

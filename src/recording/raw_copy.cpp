@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "g4lidar/recording/raw_copy.hpp"
+#include "g4lidar/recording/raw_bytes.hpp"
 
 #include <cstddef>
 #include <utility>

@@ -5,8 +5,8 @@
 #include <string>
 #include <utility>
 
-#include "g4lidar/recording/recording_switch.hpp"
-#include "g4lidar/transport/forwarding.hpp"
+#include "g4lidar/recording/writer.hpp"
+#include "g4lidar/transport/transport.hpp"
 #include "new_file.hpp"
 #include "recording/mcap/file_writer.hpp"
 #include "recording/play/played_file.hpp"

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "g4lidar/source.hpp"
+#include "g4lidar/transport/source.hpp"
 #include "service/service_core.hpp"
 
 namespace g4lidar {

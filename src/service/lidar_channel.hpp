@@ -14,9 +14,9 @@
 
 #include "g4lidar/background_reader.hpp"
 #include "g4lidar/diagnostics/running_diagnosis.hpp"
-#include "g4lidar/lidar_parameters.hpp"
 #include "g4lidar/lidar_service.hpp"
-#include "g4lidar/odometry_feed.hpp"
+#include "g4lidar/motion/odometry_feed.hpp"
+#include "g4lidar/options/lidar_parameters.hpp"
 #include "g4lidar/scan_shaper.hpp"
 
 namespace g4lidar {

@@ -12,12 +12,12 @@
 #include <utility>
 
 #include "g4lidar/detail/saturating.hpp"
-#include "g4lidar/diagnostics/diagnostic_message.hpp"
-#include "g4lidar/source.hpp"
-#include "g4lidar/standby.hpp"
+#include "g4lidar/diagnostics/diagnosis.hpp"
+#include "g4lidar/transport/source.hpp"
 #include "service/lidar_channel.hpp"
 #include "service/pending_changes.hpp"
 #include "service/service_core.hpp"
+#include "service/standby.hpp"
 
 namespace g4lidar {
 namespace {

@@ -8,7 +8,7 @@
 #include <optional>
 #include <string>
 
-#include "g4lidar/message/diagnostic_array.hpp"
+#include "g4lidar/message/ros_messages.hpp"
 #include "g4lidar/scan_shaper.hpp"
 
 namespace g4lidar {

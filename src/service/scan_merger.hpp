@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "g4lidar/merge.hpp"
-#include "g4lidar/message/diagnostic_array.hpp"
+#include "g4lidar/message/ros_messages.hpp"
 #include "g4lidar/motion.hpp"
 #include "g4lidar/point.hpp"
 #include "g4lidar/scan_shaper.hpp"

@@ -3,7 +3,7 @@
 
 #include <utility>
 
-#include "g4lidar/source.hpp"
+#include "g4lidar/transport/source.hpp"
 
 namespace g4lidar {
 namespace {

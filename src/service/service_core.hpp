@@ -12,9 +12,8 @@
 #include <string>
 #include <vector>
 
-#include "g4lidar/lidar_parameters.hpp"
 #include "g4lidar/lidar_service.hpp"
-#include "g4lidar/odometry_path.hpp"
+#include "g4lidar/options/lidar_parameters.hpp"
 #include "g4lidar/scan_shaper.hpp"
 #include "service/motion_watch.hpp"
 #include "service/place_tracker.hpp"

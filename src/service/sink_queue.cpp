@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "g4lidar/owned_scan.hpp"
+#include "g4lidar/lidar.hpp"
 
 namespace g4lidar {
 namespace {

@@ -3,7 +3,7 @@
 // series.
 #include "sim/exact.hpp"
 
-#include "g4lidar/sim/arithmetic.hpp"
+#include "sim/arithmetic.hpp"
 
 #include <array>
 #include <cmath>

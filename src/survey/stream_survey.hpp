@@ -11,7 +11,7 @@
 #include "echo_signs.hpp"
 #include "g4lidar/core/layout_recogniser.hpp"
 #include "g4lidar/core/stream_parser.hpp"
-#include "g4lidar/device_information.hpp"
+#include "g4lidar/settings.hpp"
 #include "other_makers.hpp"
 #include "text_signs.hpp"
 #include "unrecognised_bytes.hpp"

@@ -9,10 +9,10 @@
 #include <string_view>
 
 #include "g4lidar/transport/serial_port.hpp"
-#include "g4lidar/transport/tcp_port.hpp"
 #include "g4lidar/transport/transport.hpp"
 #include "owned_fd.hpp"
 #include "system_calls.hpp"
+#include "transport/tcp_port.hpp"
 
 namespace g4lidar {
 

@@ -21,7 +21,7 @@
 #include "g4lidar/sim/device_options.hpp"
 #include "g4lidar/sim/virtual_port.hpp"
 #include "g4lidar/sim/world.hpp"
-#include "g4lidar/transport/forwarding.hpp"
+#include "g4lidar/transport/transport.hpp"
 
 namespace g4_tool::acceptance::test {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The CRC byte before zero packets: when it is a check, when it shows a lost packet, and when not.
-#include "g4lidar/core/ct_check.hpp"
+#include "g4lidar/core/ct_information.hpp"
 
 #include <gtest/gtest.h>
 

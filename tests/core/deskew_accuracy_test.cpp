@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Deskewing against a reference in double precision: twists, paths, functions and mountings.
-#include "g4lidar/deskew.hpp"
+#include "g4lidar/motion/deskew.hpp"
 
 #include <gtest/gtest.h>
 

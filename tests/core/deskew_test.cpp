@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Deskewing: worked examples, flags, what is outside of the motion, and grids of the result.
-#include "g4lidar/deskew.hpp"
+#include "g4lidar/motion/deskew.hpp"
 
 #include <gtest/gtest.h>
 

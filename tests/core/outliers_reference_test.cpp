@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "../support/test_scale.hpp"
-#include "g4lidar/outliers.hpp"
+#include "g4lidar/filter/outliers.hpp"
 
 namespace g4lidar::test {
 namespace {

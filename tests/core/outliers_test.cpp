@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Which returns are marked as isolated and as veiling: constructed scans of poles, walls and mixed
 // pixels.
-#include "g4lidar/outliers.hpp"
+#include "g4lidar/filter/outliers.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Plausibility beyond the checksum: what is found of the errors that it lets through, and what is
 // marked without an error, on a simulated lidar behind a line that flips bits.
-#include "g4lidar/plausibility.hpp"
+#include "g4lidar/filter/plausibility.hpp"
 
 #include <gtest/gtest.h>
 

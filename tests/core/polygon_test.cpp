@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What is inside of a polygon: edges, corners, crossings, degenerate outlines.
-#include "g4lidar/polygon.hpp"
+#include "g4lidar/filter.hpp"
 
 #include <gtest/gtest.h>
 

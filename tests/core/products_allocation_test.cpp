@@ -14,9 +14,9 @@
 #include "g4lidar/core/scan_assembler.hpp"
 #include "g4lidar/core/stream_counter.hpp"
 #include "g4lidar/core/stream_parser.hpp"
-#include "g4lidar/deskew.hpp"
 #include "g4lidar/grid.hpp"
 #include "g4lidar/merge.hpp"
+#include "g4lidar/motion/deskew.hpp"
 #include "support/allocation_count.hpp"
 #include "support/packet_bytes.hpp"
 

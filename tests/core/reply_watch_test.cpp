@@ -13,7 +13,6 @@
 #include <vector>
 
 #include "g4lidar/core/model.hpp"
-#include "g4lidar/core/zero_offset.hpp"
 
 namespace g4lidar {
 namespace {

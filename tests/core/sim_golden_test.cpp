@@ -7,9 +7,9 @@
 #include <string>
 #include <variant>
 
-#include "g4lidar/sim/arithmetic.hpp"
 #include "g4lidar/sim/odometry.hpp"
 #include "g4lidar/sim/scanner.hpp"
+#include "sim/arithmetic.hpp"
 
 namespace {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Which directions without return mark_near() flags: rules on single points, and its false alarms and
 // misses before approaching walls, poles and people in the simulator, by the simulator's true ranges.
-#include "g4lidar/too_near.hpp"
+#include "g4lidar/filter/too_near.hpp"
 
 #include <gtest/gtest.h>
 

@@ -16,7 +16,7 @@
 
 #include "diagnostics/doctor_bench.hpp"
 #include "g4lidar/core/model.hpp"
-#include "g4lidar/transport/forwarding.hpp"
+#include "g4lidar/transport/transport.hpp"
 
 namespace g4lidar::test {
 

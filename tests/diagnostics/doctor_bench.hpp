@@ -15,7 +15,7 @@
 #include <variant>
 #include <vector>
 
-#include "g4lidar/diagnostics/diagnostic_run.hpp"
+#include "g4lidar/diagnostics/diagnosis.hpp"
 #include "g4lidar/sim/virtual_port.hpp"
 #include "g4lidar/sim/world.hpp"
 

@@ -14,7 +14,7 @@
 #include "diagnostics/agreement.hpp"
 #include "diagnostics/doctor_bench.hpp"
 #include "diagnostics/odd_links.hpp"
-#include "g4lidar/diagnostics/diagnostic_message.hpp"
+#include "g4lidar/diagnostics/diagnosis.hpp"
 #include "transport/pty.hpp"
 
 /// Whether the system refuses devices, as it does in a container that may not use them.

@@ -15,7 +15,7 @@
 #include "diagnostics/doctor_bench.hpp"
 #include "g4lidar/core/model.hpp"
 #include "g4lidar/sim/device_options.hpp"
-#include "g4lidar/transport/forwarding.hpp"
+#include "g4lidar/transport/transport.hpp"
 #include "support/test_scale.hpp"
 
 namespace {

@@ -13,7 +13,7 @@
 #include "diagnostics/doctor_bench.hpp"
 #include "g4lidar/core/response.hpp"
 #include "g4lidar/sim/random.hpp"
-#include "g4lidar/transport/forwarding.hpp"
+#include "g4lidar/transport/transport.hpp"
 #include "support/test_scale.hpp"
 
 namespace {

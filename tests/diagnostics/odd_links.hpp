@@ -15,8 +15,7 @@
 #include "diagnostics/doctor_bench.hpp"
 #include "g4lidar/core/command.hpp"
 #include "g4lidar/core/response.hpp"
-#include "g4lidar/transport/connector.hpp"
-#include "g4lidar/transport/forwarding.hpp"
+#include "g4lidar/transport/transport.hpp"
 
 namespace g4lidar::test {
 

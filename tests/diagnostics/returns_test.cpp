@@ -16,7 +16,7 @@
 
 #include "diagnostics/doctor_bench.hpp"
 #include "g4lidar/core/model.hpp"
-#include "g4lidar/diagnostics/diagnostic_message.hpp"
+#include "g4lidar/diagnostics/diagnosis.hpp"
 #include "g4lidar/diagnostics/running_diagnosis.hpp"
 #include "g4lidar/lidar.hpp"
 #include "g4lidar/sim/device_options.hpp"

@@ -13,7 +13,7 @@
 #include "diagnostics/doctor_bench.hpp"
 #include "g4lidar/diagnostics/running_diagnosis.hpp"
 #include "g4lidar/lidar.hpp"
-#include "g4lidar/transport/forwarding.hpp"
+#include "g4lidar/transport/transport.hpp"
 
 namespace g4lidar::test {
 

@@ -14,7 +14,7 @@
 #include "g4lidar/lidar.hpp"
 #include "g4lidar/sim/device.hpp"
 #include "g4lidar/sim/virtual_port.hpp"
-#include "g4lidar/transport/forwarding.hpp"
+#include "g4lidar/transport/transport.hpp"
 
 namespace g4lidar::test {
 

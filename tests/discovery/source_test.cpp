@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What the name of a lidar means, and lidar::open() with each kind of name.
-#include "g4lidar/source.hpp"
+#include "g4lidar/transport/source.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -17,7 +17,6 @@
 
 #include "g4lidar/lidar.hpp"
 #include "g4lidar/sim/setup.hpp"
-#include "g4lidar/sim/simulated_source.hpp"
 #include "support/patience.hpp"
 
 namespace g4lidar::test {

@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "g4lidar/diagnostics/diagnostic_run.hpp"
+#include "g4lidar/diagnostics/diagnosis.hpp"
 #include "g4lidar/discovery.hpp"
 #include "g4lidar/lidar.hpp"
 #include "g4lidar/transport/transport.hpp"

@@ -13,7 +13,7 @@
 
 #include "g4lidar/core/model.hpp"
 #include "g4lidar/lidar.hpp"
-#include "g4lidar/transport/forwarding.hpp"
+#include "g4lidar/transport/transport.hpp"
 #include "support/virtual_transport.hpp"
 
 namespace g4lidar::test {

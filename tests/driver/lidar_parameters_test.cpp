@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Filters as parameters, on a scan that is written here.
-#include "g4lidar/lidar_parameters.hpp"
+#include "g4lidar/options/lidar_parameters.hpp"
 
 #include <gmock/gmock.h>
 

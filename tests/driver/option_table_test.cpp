@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The table of options, and what is made from it: each row is complete, its limits hold, and the documents have it.
-#include "g4lidar/option_table.hpp"
+#include "g4lidar/options/option_table.hpp"
 
 #include <gmock/gmock.h>
 
@@ -16,8 +16,8 @@
 #include <tuple>
 #include <utility>
 
-#include "g4lidar/filter_text.hpp"
-#include "g4lidar/source.hpp"
+#include "g4lidar/options/filter_text.hpp"
+#include "g4lidar/transport/source.hpp"
 
 namespace g4lidar::test {
 namespace {

@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "g4lidar/lidar.hpp"
-#include "g4lidar/scan_loop.hpp"
 #include "support/virtual_transport.hpp"
 
 namespace g4lidar {

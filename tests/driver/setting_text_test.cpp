@@ -6,8 +6,8 @@
 #include <string>
 #include <string_view>
 
-#include "g4lidar/lidar_parameters.hpp"
-#include "g4lidar/setting_table.hpp"
+#include "g4lidar/options/lidar_parameters.hpp"
+#include "g4lidar/options/option_table.hpp"
 
 namespace g4lidar {
 namespace {

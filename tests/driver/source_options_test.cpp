@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "g4lidar/lidar.hpp"
-#include "g4lidar/recording/replay.hpp"
-#include "g4lidar/source.hpp"
+#include "g4lidar/recording/reader.hpp"
+#include "g4lidar/transport/source.hpp"
 #include "recording/recorded_run.hpp"
 #include "support/virtual_transport.hpp"
 

@@ -9,7 +9,6 @@
 
 #include "g4lidar/background_reader.hpp"
 #include "g4lidar/lidar.hpp"
-#include "g4lidar/scan_loop.hpp"
 #include "recording/recorded_run.hpp"
 #include "support/patience.hpp"
 #include "support/virtual_transport.hpp"

@@ -16,12 +16,12 @@
 #include "g4lidar/lidar.hpp"
 #include "g4lidar/sim/pty_port.hpp"
 #include "g4lidar/transport/serial_port.hpp"
-#include "g4lidar/transport/tcp_port.hpp"
 #include "scenario.hpp"
 #include "support/patience.hpp"
 #include "transport/fd_port.hpp"
 #include "transport/listener.hpp"
 #include "transport/pty.hpp"
+#include "transport/tcp_port.hpp"
 #include "transport/temporary_file.hpp"
 
 namespace g4lidar::test {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "g4lidar/diagnostics/diagnostic_message.hpp"
+#include "g4lidar/diagnostics/diagnosis.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

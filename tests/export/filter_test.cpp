@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "g4lidar/grid.hpp"
-#include "g4lidar/polygon.hpp"
 
 namespace g4lidar::test {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Masks from text: what is read, and every error with its line.
-#include "g4lidar/export/mask.hpp"
+#include "g4lidar/options/filter_text.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

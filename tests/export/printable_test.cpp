@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Texts of a device or a file: no bytes that a terminal interprets, and valid JSON.
-#include "g4lidar/export/printable.hpp"
+#include "g4lidar/error.hpp"
 
 #include <gtest/gtest.h>
 

@@ -9,14 +9,13 @@
 
 #include "g4lidar/core/clock/arrival_line.hpp"
 #include "g4lidar/core/clock/arrival_window.hpp"
-#include "g4lidar/core/clock/late_packets.hpp"
 #include "g4lidar/core/clock/packet_times.hpp"
 #include "g4lidar/core/clock/sample_counter.hpp"
 #include "g4lidar/core/point_ring.hpp"
 #include "g4lidar/core/scan_assembler.hpp"
 #include "g4lidar/core/sensor_clock.hpp"
 #include "g4lidar/core/session.hpp"
-#include "g4lidar/wall_clock.hpp"
+#include "g4lidar/core/wall_clock.hpp"
 #include "numbers.hpp"
 #include "support/packet_maker.hpp"
 

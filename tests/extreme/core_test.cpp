@@ -9,19 +9,18 @@
 
 #include <gtest/gtest.h>
 
+#include "core/sample_clock.hpp"
 #include "g4lidar/core/angle.hpp"
 #include "g4lidar/core/correction.hpp"
 #include "g4lidar/core/decode.hpp"
 #include "g4lidar/core/layout_recogniser.hpp"
 #include "g4lidar/core/model.hpp"
 #include "g4lidar/core/model_choice.hpp"
+#include "g4lidar/core/packet.hpp"
 #include "g4lidar/core/request.hpp"
-#include "g4lidar/core/sample_clock.hpp"
-#include "g4lidar/core/session/model_requests.hpp"
 #include "g4lidar/core/stream_counter.hpp"
 #include "g4lidar/core/stream_parser.hpp"
-#include "g4lidar/core/time_packet.hpp"
-#include "g4lidar/plausibility.hpp"
+#include "g4lidar/filter/plausibility.hpp"
 #include "g4lidar/settings.hpp"
 #include "numbers.hpp"
 

@@ -8,14 +8,13 @@
 
 #include <gtest/gtest.h>
 
-#include "g4lidar/deskew.hpp"
+#include "g4lidar/lidar.hpp"
 #include "g4lidar/merge.hpp"
 #include "g4lidar/motion.hpp"
-#include "g4lidar/odometry_feed.hpp"
-#include "g4lidar/odometry_path.hpp"
-#include "g4lidar/owned_scan.hpp"
+#include "g4lidar/motion/deskew.hpp"
+#include "g4lidar/motion/odometry_feed.hpp"
+#include "g4lidar/motion/twist_estimator.hpp"
 #include "g4lidar/scan_shaper.hpp"
-#include "g4lidar/twist_estimator.hpp"
 #include "numbers.hpp"
 
 namespace {

@@ -8,10 +8,10 @@
 #include <gtest/gtest.h>
 
 #include "g4lidar/core/model.hpp"
-#include "g4lidar/core/zero_offset.hpp"
-#include "g4lidar/lidar_parameters.hpp"
+#include "g4lidar/core/reply_watch.hpp"
 #include "g4lidar/message/ros_messages.hpp"
-#include "g4lidar/recording/raw_copy.hpp"
+#include "g4lidar/options/lidar_parameters.hpp"
+#include "g4lidar/recording/raw_bytes.hpp"
 #include "numbers.hpp"
 
 namespace {

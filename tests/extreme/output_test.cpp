@@ -10,17 +10,14 @@
 
 #include "any_scan.hpp"
 #include "g4lidar/background_reader.hpp"
-#include "g4lidar/bulk_decoder.hpp"
 #include "g4lidar/core/stream_counter.hpp"
-#include "g4lidar/detail/text.hpp"
 #include "g4lidar/diagnostics/diagnosis.hpp"
-#include "g4lidar/message/diagnostic_array.hpp"
 #include "g4lidar/message/ros_messages.hpp"
-#include "g4lidar/recording/digest.hpp"
+#include "g4lidar/options/option_table.hpp"
+#include "g4lidar/ostream.hpp"
+#include "g4lidar/recording/bulk_decoder.hpp"
+#include "g4lidar/recording/contents.hpp"
 #include "g4lidar/recording/raw_bytes.hpp"
-#include "g4lidar/recording/recorded_event.hpp"
-#include "g4lidar/recording/stream_head.hpp"
-#include "g4lidar/setting_table.hpp"
 #include "numbers.hpp"
 
 namespace {

@@ -10,12 +10,11 @@
 
 #include "g4lidar/cartesian.hpp"
 #include "g4lidar/filter.hpp"
+#include "g4lidar/filter/outliers.hpp"
+#include "g4lidar/filter/plausibility.hpp"
+#include "g4lidar/filter/too_near.hpp"
 #include "g4lidar/grid.hpp"
-#include "g4lidar/outliers.hpp"
-#include "g4lidar/plausibility.hpp"
 #include "g4lidar/point.hpp"
-#include "g4lidar/polygon.hpp"
-#include "g4lidar/too_near.hpp"
 #include "numbers.hpp"
 
 namespace {

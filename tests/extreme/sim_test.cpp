@@ -8,20 +8,17 @@
 
 #include <gtest/gtest.h>
 
-#include "g4lidar/sim/arithmetic.hpp"
-#include "g4lidar/sim/command_set.hpp"
 #include "g4lidar/sim/device.hpp"
-#include "g4lidar/sim/fault.hpp"
+#include "g4lidar/sim/device_options.hpp"
 #include "g4lidar/sim/odometry.hpp"
-#include "g4lidar/sim/path.hpp"
 #include "g4lidar/sim/random.hpp"
 #include "g4lidar/sim/ray_caster.hpp"
 #include "g4lidar/sim/scanner.hpp"
-#include "g4lidar/sim/scene_caster.hpp"
 #include "g4lidar/sim/setup.hpp"
 #include "g4lidar/sim/virtual_port.hpp"
 #include "g4lidar/sim/world.hpp"
 #include "numbers.hpp"
+#include "sim/arithmetic.hpp"
 
 namespace {
 

@@ -7,13 +7,12 @@
 
 #include <gtest/gtest.h>
 
-#include "g4lidar/export/mask.hpp"
-#include "g4lidar/filter_text.hpp"
-#include "g4lidar/lidar_parameters.hpp"
 #include "g4lidar/message/ros_messages.hpp"
-#include "g4lidar/setting_table.hpp"
+#include "g4lidar/options/filter_text.hpp"
+#include "g4lidar/options/lidar_parameters.hpp"
+#include "g4lidar/options/option_table.hpp"
 #include "g4lidar/sim/odometry.hpp"
-#include "g4lidar/sim/scene_caster.hpp"
+#include "g4lidar/sim/ray_caster.hpp"
 #include "g4lidar/sim/setup.hpp"
 #include "number_texts.hpp"
 #include "numbers.hpp"

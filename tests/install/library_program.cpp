@@ -3,7 +3,7 @@
 #include <array>
 #include <cstdint>
 
-#include "g4lidar/bulk_decoder.hpp"
+#include "g4lidar/recording/bulk_decoder.hpp"
 
 int main() {
   // One sample of 1000 mm at 90 degrees.

@@ -10,7 +10,7 @@
 #include <numbers>
 #include <vector>
 
-#include "g4lidar/twist_estimator.hpp"
+#include "g4lidar/motion/twist_estimator.hpp"
 #include "motion/driven_lidar.hpp"
 
 namespace g4lidar::test {

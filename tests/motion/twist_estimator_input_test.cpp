@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "g4lidar/twist_estimator.hpp"
+#include "g4lidar/motion/twist_estimator.hpp"
 #include "motion/driven_lidar.hpp"
 #include "motion/twist_errors.hpp"
 #include "support/allocation_count.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The twist of a lidar from its scans: its errors, its covariance, and what is not known.
-#include "g4lidar/twist_estimator.hpp"
+#include "g4lidar/motion/twist_estimator.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "g4lidar/deskew.hpp"
+#include "g4lidar/motion/deskew.hpp"
 #include "support/check_cases.hpp"
 #include "support/deskew_reference.hpp"
 

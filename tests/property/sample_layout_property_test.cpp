@@ -16,10 +16,10 @@
 #include <variant>
 #include <vector>
 
-#include "g4lidar/bulk_decoder.hpp"
 #include "g4lidar/core/decode.hpp"
 #include "g4lidar/core/model.hpp"
 #include "g4lidar/core/stream_parser.hpp"
+#include "g4lidar/recording/bulk_decoder.hpp"
 #include "support/check_cases.hpp"
 #include "support/family_reference.hpp"
 

@@ -7,7 +7,7 @@
 #include <limits>
 #include <thread>
 
-#include "g4lidar/recording/replay.hpp"
+#include "g4lidar/recording/reader.hpp"
 #include "made_recording.hpp"
 #include "recorded_run.hpp"
 #include "support/patience.hpp"

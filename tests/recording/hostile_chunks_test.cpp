@@ -6,7 +6,7 @@
 #include <string>
 
 #include "g4lidar/lidar.hpp"
-#include "g4lidar/recording/replay.hpp"
+#include "g4lidar/recording/reader.hpp"
 #include "g4lidar/recording/writer.hpp"
 #include "made_recording.hpp"
 #include "recorded_run.hpp"

@@ -17,9 +17,8 @@
 #include "g4lidar/lidar.hpp"
 #include "g4lidar/recording/raw_bytes.hpp"
 #include "g4lidar/recording/reader.hpp"
-#include "g4lidar/recording/replay.hpp"
 #include "g4lidar/recording/writer.hpp"
-#include "g4lidar/source.hpp"
+#include "g4lidar/transport/source.hpp"
 #include "made_recording.hpp"
 #include "support/family_reference.hpp"
 

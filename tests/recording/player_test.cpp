@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "g4lidar/recording/raw_bytes.hpp"
-#include "g4lidar/transport/forwarding.hpp"
+#include "g4lidar/transport/transport.hpp"
 #include "made_recording.hpp"
 #include "recorded_run.hpp"
 #include "support/packet_maker.hpp"

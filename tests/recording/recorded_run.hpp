@@ -13,9 +13,9 @@
 #include <vector>
 
 #include "g4lidar/lidar.hpp"
-#include "g4lidar/recording/replay.hpp"
+#include "g4lidar/recording/reader.hpp"
 #include "g4lidar/recording/writer.hpp"
-#include "g4lidar/sim/fault.hpp"
+#include "g4lidar/sim/device.hpp"
 #include "support/virtual_transport.hpp"
 
 namespace g4lidar::test {

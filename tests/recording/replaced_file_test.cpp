@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "g4lidar/recording/raw_bytes.hpp"
-#include "g4lidar/recording/replay.hpp"
-#include "g4lidar/source.hpp"
+#include "g4lidar/recording/reader.hpp"
+#include "g4lidar/transport/source.hpp"
 #include "made_recording.hpp"
 #include "support/packet_maker.hpp"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A recording is a device: what comes out of it is what came out of the device.
-#include "g4lidar/recording/replay.hpp"
 #include "g4lidar/core/response.hpp"
+#include "g4lidar/recording/reader.hpp"
 
 #include <gtest/gtest.h>
 

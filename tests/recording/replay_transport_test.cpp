@@ -7,7 +7,7 @@
 #include <array>
 #include <thread>
 
-#include "g4lidar/recording/replay.hpp"
+#include "g4lidar/recording/reader.hpp"
 #include "made_recording.hpp"
 #include "recorded_run.hpp"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The first bytes of a pipe: how long they are held back, and that nothing of them is lost.
-#include "g4lidar/recording/stream_head.hpp"
+#include "g4lidar/recording/raw_bytes.hpp"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
@@ -16,7 +16,6 @@
 #include <thread>
 #include <vector>
 
-#include "g4lidar/recording/raw_bytes.hpp"
 #include "support/family_reference.hpp"
 #include "support/patience.hpp"
 

@@ -13,7 +13,7 @@
 
 #include "cli/program.hpp"
 #include "diagnosis.hpp"
-#include "g4lidar/odometry_path.hpp"
+#include "g4lidar/scan_shaper.hpp"
 #include "lidar.hpp"
 #include "subscriber.hpp"
 #include "support/cloud_rows.hpp"

@@ -16,7 +16,6 @@
 
 #include "cli/program.hpp"
 #include "g4lidar/lidar.hpp"
-#include "g4lidar/owned_scan.hpp"
 #include "g4lidar/sim/device.hpp"
 #include "g4lidar/sim/pty_port.hpp"
 #include "g4lidar/sim/setup.hpp"

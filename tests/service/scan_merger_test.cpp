@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "g4lidar/odometry_path.hpp"
+#include "g4lidar/scan_shaper.hpp"
 
 namespace g4lidar::test {
 namespace {

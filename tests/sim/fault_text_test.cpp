@@ -6,7 +6,7 @@
 #include <string>
 #include <variant>
 
-#include "g4lidar/sim/fault.hpp"
+#include "g4lidar/sim/device.hpp"
 
 namespace {
 

@@ -13,7 +13,7 @@
 
 #include "g4lidar/sim/device.hpp"
 #include "g4lidar/sim/virtual_port.hpp"
-#include "g4lidar/transport/connector.hpp"
+#include "g4lidar/transport/transport.hpp"
 
 namespace g4lidar::simulation {
 

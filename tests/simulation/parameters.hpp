@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "g4lidar/lidar.hpp"
+#include "g4lidar/sim/device.hpp"
 #include "g4lidar/sim/device_options.hpp"
-#include "g4lidar/sim/fault.hpp"
 #include "g4lidar/sim/random.hpp"
 
 namespace g4lidar::simulation {

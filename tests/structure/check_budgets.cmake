@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 # cmake -DROOT=<project> -DBUDGETS=<cmake/budgets.txt> -DAWK=<awk> -P check_budgets.cmake
 #
-# Fails if a room of the project has more lines than its budget. Only files of text count.
+# Fails if a room of the project has more lines than its budget, or one of them more files. Only files of text count.
 
 cmake_minimum_required(VERSION 3.22)
 
@@ -14,9 +14,22 @@ if(NOT files)
   message(FATAL_ERROR "No sources in ${ROOT}")
 endif()
 
+set(all ${files})
 set(faults)
 set(report)
 foreach(row IN LISTS rows)
+  if(row MATCHES "^([0-9]+) files ([a-z]+) (.+)$")
+    set(most "${CMAKE_MATCH_1}")
+    set(name "${CMAKE_MATCH_2}")
+    set(own ${all})
+    list(FILTER own INCLUDE REGEX "${CMAKE_MATCH_3}")
+    list(LENGTH own count)
+    list(APPEND report "${name}: ${count} of ${most} files")
+    if(count GREATER most)
+      list(APPEND faults "${name}: ${count} files, at most ${most}")
+    endif()
+    continue()
+  endif()
   if(NOT row MATCHES "^([0-9]+|-) ([a-z]+) (.+)$")
     message(FATAL_ERROR "${BUDGETS}: not a room: ${row}")
   endif()
@@ -41,6 +54,6 @@ endforeach()
 list(JOIN report ", " report)
 if(faults)
   list(JOIN faults "\n  " faults)
-  message(FATAL_ERROR "Rooms with too many lines:\n  ${faults}")
+  message(FATAL_ERROR "Rooms with too many lines or files:\n  ${faults}")
 endif()
 message("${report}")

@@ -7,8 +7,7 @@
 #   lower ones, and of itself; some headers of src have a layer of their own;
 # - the simulator, include/g4lidar/sim and src/sim, uses layers 0 and 1 and itself, but of core/ only
 #   angle, bytes, command and response: nothing that reads its packets; its connections
-#   to programs (sim/virtual_port, sim/pty_port, sim/setup, sim/simulated_source, src/sim/host) also use error,
-#   transport and connector;
+#   to programs (sim/virtual_port, sim/pty_port, sim/setup, src/sim/host) also use error and transport;
 # - src/driver/source, which opens `sim:`, and the C interface, src/c, also use the public headers of the simulator;
 # - a tool includes public headers outside of detail/, and its own.
 # What a public header declares without defining it (class x;) is below it, too.
@@ -81,8 +80,8 @@ endmacro()
 macro(check_sim file other)
   if(NOT "${other}" MATCHES "^(src/)?sim/")
     set(may_see_transports OFF)
-    if("${file}" MATCHES "/sim/(virtual_port|pty_port|setup|simulated_source|host/[a-z_]+)\\.[ch]pp$" AND "${other}" MATCHES
-       "^(error|transport/transport|transport/connector)$")
+    if("${file}" MATCHES "/sim/(virtual_port|pty_port|setup|host/[a-z_]+)\\.[ch]pp$" AND "${other}" MATCHES
+       "^(error|transport/transport)$")
       set(may_see_transports ON)
     endif()
     if("${other}" MATCHES "^core/" AND NOT "${other}" MATCHES "^core/(angle|bytes|command|label|response)$")

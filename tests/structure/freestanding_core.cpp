@@ -9,6 +9,7 @@
 #include <span>
 #include <variant>
 
+#include "core/sample_clock.hpp"
 #include "g4lidar/cartesian.hpp"
 #include "g4lidar/core/angle.hpp"
 #include "g4lidar/core/bytes.hpp"
@@ -20,21 +21,19 @@
 #include "g4lidar/core/point_ring.hpp"
 #include "g4lidar/core/request.hpp"
 #include "g4lidar/core/response.hpp"
-#include "g4lidar/core/sample_clock.hpp"
 #include "g4lidar/core/scan_assembler.hpp"
 #include "g4lidar/core/sensor_clock.hpp"
 #include "g4lidar/core/session.hpp"
 #include "g4lidar/core/stream_counter.hpp"
 #include "g4lidar/core/stream_parser.hpp"
-#include "g4lidar/core/wire_check.hpp"
-#include "g4lidar/deskew.hpp"
 #include "g4lidar/filter.hpp"
+#include "g4lidar/filter/outliers.hpp"
+#include "g4lidar/filter/plausibility.hpp"
+#include "g4lidar/filter/too_near.hpp"
 #include "g4lidar/grid.hpp"
 #include "g4lidar/merge.hpp"
-#include "g4lidar/outliers.hpp"
-#include "g4lidar/plausibility.hpp"
+#include "g4lidar/motion/deskew.hpp"
 #include "g4lidar/point.hpp"
-#include "g4lidar/too_near.hpp"
 #include "g4lidar/version.hpp"
 
 namespace freestanding {

@@ -12,7 +12,6 @@
 #include "g4lidar/core/packet.hpp"
 #include "g4lidar/core/response.hpp"
 #include "g4lidar/core/stream_parser.hpp"
-#include "g4lidar/core/time_packet.hpp"
 
 namespace g4lidar::transcript {
 

@@ -11,7 +11,7 @@
 
 #include "g4lidar/lidar.hpp"
 #include "g4lidar/sim/device.hpp"
-#include "g4lidar/transport/connector.hpp"
+#include "g4lidar/transport/transport.hpp"
 
 namespace g4lidar::test {
 

@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "g4lidar/transport/serial_port.hpp"
-#include "g4lidar/transport/tcp_port.hpp"
 #include "transport/listener.hpp"
 #include "transport/pty.hpp"
+#include "transport/tcp_port.hpp"
 
 namespace g4lidar {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "g4lidar/transport/tcp_port.hpp"
+#include "transport/tcp_port.hpp"
 
 #include <thread>
 

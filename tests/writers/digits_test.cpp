@@ -13,7 +13,7 @@
 #include <random>
 #include <string>
 
-#include "g4lidar/core/sample_clock.hpp"
+#include "core/sample_clock.hpp"
 #include "support/test_scale.hpp"
 
 namespace g4lidar::test {

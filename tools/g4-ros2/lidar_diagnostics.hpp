@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "dds/bus.hpp"
-#include "g4lidar/diagnostics/diagnostic_message.hpp"
+#include "g4lidar/diagnostics/diagnosis.hpp"
 #include "options.hpp"
 #include "scan_messages.hpp"
 

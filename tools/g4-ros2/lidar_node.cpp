@@ -9,7 +9,7 @@
 
 #include "cli/exit_code.hpp"
 #include "cli/logger.hpp"
-#include "g4lidar/source.hpp"
+#include "g4lidar/transport/source.hpp"
 #include "io/service_source.hpp"
 
 namespace g4_tool {

@@ -11,7 +11,7 @@
 
 #include "dds/bus.hpp"
 #include "g4lidar/motion.hpp"
-#include "g4lidar/odometry_path.hpp"
+#include "g4lidar/scan_shaper.hpp"
 #include "options.hpp"
 
 namespace g4_tool {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "g4lidar/recording/raw_bytes.hpp"
-#include "g4lidar/transport/forwarding.hpp"
+#include "g4lidar/transport/transport.hpp"
 
 namespace g4_tool {
 

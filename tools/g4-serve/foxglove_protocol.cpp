@@ -8,7 +8,7 @@
 
 #include "cli/logger.hpp"
 #include "client_json.hpp"
-#include "g4lidar/diagnostics/diagnostic_message.hpp"
+#include "g4lidar/diagnostics/diagnosis.hpp"
 #include "g4lidar/recording/raw_bytes.hpp"
 #include "g4lidar/version.hpp"
 

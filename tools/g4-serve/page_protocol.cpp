@@ -8,8 +8,8 @@
 
 #include "cli/logger.hpp"
 #include "cli/settings.hpp"
-#include "g4lidar/core/session/model_requests.hpp"
-#include "g4lidar/setting_table.hpp"
+#include "g4lidar/core/request.hpp"
+#include "g4lidar/options/option_table.hpp"
 #include "g4lidar/version.hpp"
 
 namespace g4_tool {

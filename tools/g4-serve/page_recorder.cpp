@@ -17,7 +17,7 @@
 
 #include "cli/exit_code.hpp"
 #include "cli/logger.hpp"
-#include "g4lidar/transport/forwarding.hpp"
+#include "g4lidar/transport/transport.hpp"
 #include "io/far_times.hpp"
 #include "io/output.hpp"
 #include "io/source.hpp"

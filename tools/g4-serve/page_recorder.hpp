@@ -11,11 +11,10 @@
 
 #include "g4lidar/lidar.hpp"
 #include "g4lidar/motion.hpp"
-#include "g4lidar/recording/recorded_device.hpp"
-#include "g4lidar/recording/recording_switch.hpp"
+#include "g4lidar/recording/contents.hpp"
 #include "g4lidar/recording/writer.hpp"
 #include "g4lidar/scan.hpp"
-#include "g4lidar/transport/connector.hpp"
+#include "g4lidar/transport/transport.hpp"
 #include "page_protocol.hpp"
 
 namespace g4_tool {

@@ -11,7 +11,7 @@
 #include "cli/exit_code.hpp"
 #include "cli/logger.hpp"
 #include "cli/settings.hpp"
-#include "g4lidar/diagnostics/diagnostic_message.hpp"
+#include "g4lidar/diagnostics/diagnosis.hpp"
 #include "g4lidar/message/ros_messages.hpp"
 #include "io/service_source.hpp"
 

@@ -11,7 +11,7 @@
 #include "cli/named_sources.hpp"
 #include "cli/serve_verb.hpp"
 #include "g4lidar/lidar_service.hpp"
-#include "g4lidar/source.hpp"
+#include "g4lidar/transport/source.hpp"
 #include "lidar_rates.hpp"
 #include "page_recorder.hpp"
 

@@ -52,7 +52,7 @@ struct Scan {
 extern "C" {
     fn g4lidar_open(device: *const c_char, lidar: *mut *mut Lidar, error: *mut Error) -> c_int;
     fn g4lidar_start(lidar: *mut Lidar, error: *mut Error) -> c_int;
-    fn g4lidar_next_scan(
+    fn g4lidar_wait_scan(
         lidar: *mut Lidar,
         timeout_ms: c_int,
         scan: *mut *const Scan,
@@ -85,9 +85,9 @@ impl Open {
     }
 
     /// The borrow ends before the next call: the view cannot be kept.
-    fn next_scan(&mut self, timeout_ms: i32) -> Result<(&[Point], f32), String> {
+    fn wait_scan(&mut self, timeout_ms: i32) -> Result<(&[Point], f32), String> {
         let mut scan = std::ptr::null();
-        checked(|error| unsafe { g4lidar_next_scan(self.0, timeout_ms, &mut scan, error) })?;
+        checked(|error| unsafe { g4lidar_wait_scan(self.0, timeout_ms, &mut scan, error) })?;
         unsafe {
             let points = std::slice::from_raw_parts((*scan).points, (*scan).point_count);
             Ok((points, (*scan).frequency_hz))
@@ -111,7 +111,7 @@ fn run() -> Result<(), String> {
     let mut lidar = Open::new(&device)?;
     lidar.start()?;
     for _ in 0..5 {
-        let (points, frequency_hz) = lidar.next_scan(5000)?;
+        let (points, frequency_hz) = lidar.wait_scan(5000)?;
         // No return is not free space: see near_options of g4lidar_shaper_options.
         let returns = points.iter().filter(|each| each.flags & NO_RETURN == 0);
         let nearest_mm = returns.map(|each| each.range_mm).fold(f32::INFINITY, f32::min);

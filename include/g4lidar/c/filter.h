@@ -72,7 +72,7 @@ G4LIDAR_C_API void g4lidar_outlier_options_init(g4lidar_outlier_options* options
 
 /** Which points without return are flagged G4LIDAR_MAY_BE_TOO_NEAR: in directions where, in the last revolutions,
  *  a return came from less than twice the shortest range, and none that is farther since. That misses some such
- *  targets, and has false alarms: <g4lidar/too_near.hpp> has their numbers. */
+ *  targets, and has false alarms: <g4lidar/filter/too_near.hpp> has their numbers. */
 typedef struct g4lidar_near_options {
   size_t struct_size; /**< Set by g4lidar_near_options_init(). */
   float

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <numbers>
 
-#include "g4lidar/detail/cpp20.hpp"
+#include "g4lidar/detail/api.hpp"
 #include "g4lidar/detail/saturating.hpp"
 
 namespace g4lidar {

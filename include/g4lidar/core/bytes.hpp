@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Bytes on the wire and little-endian loads from them, the same on every processor.
+// Bytes on the wire: little-endian loads from them, the same on every processor, and the result of checking them.
 #pragma once
 
 #include <concepts>
@@ -9,7 +9,7 @@
 #include <span>
 #include <type_traits>
 
-#include "g4lidar/detail/cpp20.hpp"
+#include "g4lidar/detail/api.hpp"
 
 namespace g4lidar {
 
@@ -51,5 +51,24 @@ template <class T>
 concept dying_owner =
     !std::is_lvalue_reference_v<T> && !std::ranges::borrowed_range<std::remove_cvref_t<T>> &&
     std::convertible_to<const std::remove_cvref_t<T>&, bytes>;
+
+/// How far the available bytes decide whether they begin with a packet or response.
+enum class wire_state : std::uint8_t {
+  valid,         ///< A complete packet or response that passes all checks.
+  incomplete,    ///< No contradiction yet; more bytes are needed to decide.
+  bad_header,    ///< The header or an impossible content excludes both.
+  bad_checksum,  ///< A complete packet by its header, but its checksum does not match.
+};
+
+/// The result for one front. More bytes behind it change only the result `incomplete`.
+struct wire_check {
+  wire_state state;
+  /// valid: the size of the packet or response. incomplete: with fewer bytes than this the result
+  /// stays `incomplete` (always more than are available). bad_header, bad_checksum: the number of
+  /// bytes that the refused header claimed.
+  std::size_t size;
+
+  friend constexpr bool operator==(const wire_check&, const wire_check&) = default;
+};
 
 }  // namespace g4lidar

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "g4lidar/detail/cpp20.hpp"
+#include "g4lidar/detail/api.hpp"
 
 namespace g4lidar {
 

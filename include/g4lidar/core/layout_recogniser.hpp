@@ -14,7 +14,7 @@
 #include "g4lidar/core/model_choice.hpp"
 #include "g4lidar/core/packet.hpp"
 #include "g4lidar/core/response.hpp"
-#include "g4lidar/core/skipped.hpp"
+#include "g4lidar/core/stream_counts.hpp"
 #include "g4lidar/core/stream_parser.hpp"
 
 namespace g4lidar {

@@ -10,7 +10,7 @@
 
 #include "g4lidar/core/label.hpp"
 #include "g4lidar/core/model_record.hpp"
-#include "g4lidar/device_information.hpp"
+#include "g4lidar/settings.hpp"
 
 namespace g4lidar {
 

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <string_view>
 
-#include "g4lidar/detail/cpp20.hpp"
+#include "g4lidar/detail/api.hpp"
 
 namespace g4lidar {
 

@@ -10,8 +10,6 @@
 #include <type_traits>
 
 #include "g4lidar/core/bytes.hpp"
-#include "g4lidar/core/wire_check.hpp"
-#include "g4lidar/device_information.hpp"
 #include "g4lidar/settings.hpp"
 
 namespace g4lidar {

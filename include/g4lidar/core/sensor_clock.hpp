@@ -8,7 +8,6 @@
 #include <limits>
 
 #include "g4lidar/core/clock/arrival_window.hpp"
-#include "g4lidar/core/clock/late_packets.hpp"
 #include "g4lidar/core/clock/packet_times.hpp"
 #include "g4lidar/core/clock/sample_counter.hpp"
 #include "g4lidar/core/decode.hpp"

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "g4lidar/detail/cpp20.hpp"
+#include "g4lidar/detail/api.hpp"
 
 namespace g4lidar {
 

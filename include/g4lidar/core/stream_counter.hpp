@@ -5,12 +5,11 @@
 #include <cstddef>
 #include <variant>
 
-#include "g4lidar/core/ct_check.hpp"
+#include "g4lidar/core/ct_information.hpp"
 #include "g4lidar/core/packet.hpp"
 #include "g4lidar/core/response.hpp"
 #include "g4lidar/core/stream_counts.hpp"
 #include "g4lidar/core/stream_parser.hpp"
-#include "g4lidar/core/time_packet.hpp"
 
 namespace g4lidar {
 

@@ -17,9 +17,7 @@
 #include "g4lidar/core/bytes.hpp"
 #include "g4lidar/core/packet.hpp"
 #include "g4lidar/core/response.hpp"
-#include "g4lidar/core/skipped.hpp"
-#include "g4lidar/core/time_packet.hpp"
-#include "g4lidar/core/wire_check.hpp"
+#include "g4lidar/core/stream_counts.hpp"
 
 namespace g4lidar {
 

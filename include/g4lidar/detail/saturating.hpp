@@ -7,7 +7,7 @@
 #include <limits>
 #include <type_traits>
 
-#include "g4lidar/detail/cpp20.hpp"
+#include "g4lidar/detail/api.hpp"
 
 namespace g4lidar::detail {
 

@@ -11,10 +11,10 @@
 #include "g4lidar/diagnostics/diagnosis.hpp"
 #include "g4lidar/error.hpp"
 #include "g4lidar/filter.hpp"
-#include "g4lidar/filter_text.hpp"
 #include "g4lidar/lidar.hpp"
+#include "g4lidar/options/filter_text.hpp"
 #include "g4lidar/settings.hpp"
-#include "g4lidar/transport/connector.hpp"
+#include "g4lidar/transport/transport.hpp"
 
 namespace g4lidar {
 

@@ -8,7 +8,9 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "g4lidar/detail/api.hpp"
@@ -103,7 +105,7 @@ struct laser_scan_numbers {
 /// for a G4; ranges below are not reliable), range_max header.longest_mm (16 m for a G4; a sample may contain
 /// more), angle_increment 2 pi / bins.
 /// +infinity is not free space: a target nearer than the shortest range of the lidar
-/// (0.28 m at 9 kHz, more than range_min) may give no return; see too_near.hpp and grid_options. Allocates beyond the capacity of `out`.
+/// (0.28 m at 9 kHz, more than range_min) may give no return; see filter/too_near.hpp and grid_options. Allocates beyond the capacity of `out`.
 ///
 /// By angle, `ranges_m` are the bins that fill_grid() fills in the robot's frame, at least one:
 /// angle_min is -pi. By time, they are those that fill_time_grid() fills, and the message
@@ -173,5 +175,24 @@ G4LIDAR_API void put_tf_message(const transform_message& message, std::vector<st
 /// Appends a rosgraph_msgs/msg/Clock to `out`; `now_ns` is in nanoseconds since 1970. Allocates beyond
 /// the capacity of `out`.
 G4LIDAR_API void put_clock(std::int64_t now_ns, std::vector<std::uint8_t>& out);
+
+/// The levels of a DiagnosticStatus.
+enum class diagnostic_level : std::uint8_t { ok = 0, warn = 1, error = 2, stale = 3 };
+
+/// One diagnostic_msgs/msg/DiagnosticStatus.
+struct diagnostic_status {
+  diagnostic_level level = diagnostic_level::ok;
+  std::string name{};         ///< "g4lidar: rate".
+  std::string message{};      ///< Cause and advice; "ok" where there is no diagnosis.
+  std::string hardware_id{};  ///< The serial number of the lidar.
+  std::vector<std::pair<std::string, std::string>> values{};  ///< Names with units, and values.
+};
+
+/// The schema of DiagnosticArray.
+[[nodiscard]] G4LIDAR_API message_schema diagnostic_array_schema() noexcept;
+/// Appends a diagnostic_msgs/msg/DiagnosticArray to `out`; `stamp_ns` is in nanoseconds since 1970.
+/// Allocates beyond the capacity of `out`.
+G4LIDAR_API void put_diagnostic_array(std::span<const diagnostic_status> statuses,
+                                      std::int64_t stamp_ns, std::vector<std::uint8_t>& out);
 
 }  // namespace g4lidar

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Reads recordings from front to back, intact, cut off or damaged.
+// Reads recordings from front to back, intact, cut off or damaged; and plays them as a device.
 #pragma once
 
 #include <cstdint>
@@ -14,9 +14,9 @@
 #include "g4lidar/detail/api.hpp"
 #include "g4lidar/error.hpp"
 #include "g4lidar/motion.hpp"
-#include "g4lidar/recording/digest.hpp"
-#include "g4lidar/recording/recorded_device.hpp"
-#include "g4lidar/recording/recorded_event.hpp"
+#include "g4lidar/recording/contents.hpp"
+#include "g4lidar/recording/player.hpp"
+#include "g4lidar/transport/transport.hpp"
 
 namespace g4lidar {
 
@@ -117,6 +117,27 @@ class G4LIDAR_API recording_reader {
   class G4LIDAR_HIDDEN file_reader;
   explicit recording_reader(std::unique_ptr<file_reader> made) noexcept;
   std::unique_ptr<file_reader> made_;
+};
+
+/// Opens recordings as connectors, for lidar::open(). The device of the resulting transport does
+/// not answer; the transport returns the bytes of each read as they were recorded, and ends with
+/// end_of_input. Its clock is that of the recorded transport.
+///
+///     auto recording = g4lidar::replay::open("walk.mcap", {.speed = 1});
+///     auto lidar = g4lidar::lidar::open(std::move(*recording));
+class G4LIDAR_API replay {
+ public:
+  replay() = delete;
+
+  /// `is_cancelled`: see reading_options; also while it is played. Fails with bad_option, or like
+  /// recording_reader::open().
+  [[nodiscard]] static result<std::unique_ptr<connector>> open(
+      std::string_view path, const playback_options& options = {},
+      const std::function<bool()>& is_cancelled = {});
+
+  /// The reader of the recording that `from` plays, for its position and its damage; null if `from`
+  /// is something else. Valid as long as `from`, or the lidar that owns it.
+  [[nodiscard]] static const recording_reader* reader_of(connector& from) noexcept;
 };
 
 }  // namespace g4lidar

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Recordings: the bytes of a connection to a lidar, in MCAP files that other tools can also open.
+// Recordings: the bytes of a connection to a lidar, in MCAP files that other tools can also open; from any moment to any
+// other, too.
 #pragma once
 
 #include <chrono>
@@ -16,16 +17,14 @@
 #include "g4lidar/core/model_record.hpp"
 #include "g4lidar/detail/api.hpp"
 #include "g4lidar/error.hpp"
+#include "g4lidar/filter/too_near.hpp"
 #include "g4lidar/grid.hpp"
 #include "g4lidar/message/ros_messages.hpp"
 #include "g4lidar/motion.hpp"
 #include "g4lidar/point.hpp"
-#include "g4lidar/recording/digest.hpp"
-#include "g4lidar/recording/recorded_device.hpp"
-#include "g4lidar/recording/recorded_event.hpp"
+#include "g4lidar/recording/contents.hpp"
 #include "g4lidar/scan.hpp"
-#include "g4lidar/too_near.hpp"
-#include "g4lidar/transport/connector.hpp"
+#include "g4lidar/transport/transport.hpp"
 
 namespace g4lidar {
 
@@ -177,5 +176,34 @@ class G4LIDAR_API recording_writer {
 /// is to be replaced; with system.
 [[nodiscard]] G4LIDAR_API result<std::unique_ptr<connector>> recorded(
     std::unique_ptr<connector> from, recording_writer& into);
+
+class recording_writer;
+
+/// Observes a connection, and records it while it is on. A recording that begins in the middle of a scan states what
+/// is set at that moment. *Single thread*, that of the lidar.
+class G4LIDAR_API recording_switch {
+ public:
+  recording_switch();
+  recording_switch(const recording_switch&) = delete;
+  recording_switch& operator=(const recording_switch&) = delete;
+  /// Off. A connector of observe() is destroyed before.
+  ~recording_switch();
+
+  /// `from`, observed: for lidar_options::wrap. This outlives the result. A recording that is played is returned as it
+  /// is: nothing of it is recorded.
+  [[nodiscard]] std::unique_ptr<connector> observe(std::unique_ptr<connector> from);
+
+  /// Records into `to`, which must outlive it, until off(). False, and nothing is recorded, without a connection.
+  [[nodiscard]] bool on(recording_writer& to) noexcept;
+  /// Ends it; the writer is not closed.
+  void off() noexcept;
+
+  /// The time of the latest bytes or event of the connection; nothing without a connection.
+  [[nodiscard]] std::optional<std::int64_t> latest_ns() const noexcept;
+
+ private:
+  class G4LIDAR_HIDDEN observer;
+  std::unique_ptr<observer> observer_;
+};
 
 }  // namespace g4lidar

@@ -5,7 +5,7 @@
 #include <array>
 #include <cstdint>
 
-#include "g4lidar/detail/cpp20.hpp"
+#include "g4lidar/detail/api.hpp"
 
 namespace g4lidar::sim {
 

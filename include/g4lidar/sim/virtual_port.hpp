@@ -14,7 +14,6 @@
 #include "g4lidar/detail/saturating.hpp"
 #include "g4lidar/error.hpp"
 #include "g4lidar/sim/device.hpp"
-#include "g4lidar/transport/connector.hpp"
 #include "g4lidar/transport/transport.hpp"
 
 namespace g4lidar::sim {

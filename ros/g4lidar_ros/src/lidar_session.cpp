@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "g4lidar/source.hpp"
+#include "g4lidar/transport/source.hpp"
 
 namespace g4lidar_ros {
 namespace {

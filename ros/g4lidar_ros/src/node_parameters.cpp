@@ -12,10 +12,9 @@
 
 #include <rclcpp/version.h>
 
-#include "g4lidar/export/mask.hpp"
-#include "g4lidar/filter_text.hpp"
-#include "g4lidar/lidar_parameters.hpp"
-#include "g4lidar/source.hpp"
+#include "g4lidar/options/filter_text.hpp"
+#include "g4lidar/options/lidar_parameters.hpp"
+#include "g4lidar/transport/source.hpp"
 #include "parameter_declarations.hpp"
 
 namespace g4lidar_ros {

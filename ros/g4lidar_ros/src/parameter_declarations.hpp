@@ -6,7 +6,7 @@
 
 #include <rclcpp_lifecycle/lifecycle_node.hpp>
 
-#include "g4lidar/option_table.hpp"
+#include "g4lidar/options/option_table.hpp"
 
 namespace g4lidar_ros {
 

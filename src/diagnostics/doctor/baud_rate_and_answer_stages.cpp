@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-#include "g4lidar/recognition.hpp"
+#include "g4lidar/transport/recognition.hpp"
 #include "link/identity_reader.hpp"
 #include "live_run.hpp"
 #include "transport/custom_baud.hpp"

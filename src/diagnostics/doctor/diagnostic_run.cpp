@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The way through the stages of a run; of them port, permission and holder: which port, which users
 // may open it, and which process has it open.
-#include "g4lidar/diagnostics/diagnostic_run.hpp"
+#include "g4lidar/diagnostics/diagnosis.hpp"
 
 #include <grp.h>
 #include <pwd.h>
@@ -19,12 +19,12 @@
 
 #include "diagnostics/stages.hpp"
 #include "g4lidar/discovery.hpp"
-#include "g4lidar/source.hpp"
 #include "g4lidar/transport/serial_port.hpp"
-#include "g4lidar/transport/tcp_port.hpp"
+#include "g4lidar/transport/source.hpp"
 #include "live_run.hpp"
 #include "transport/port_holder.hpp"
 #include "transport/system_calls.hpp"
+#include "transport/tcp_port.hpp"
 
 namespace g4lidar {
 namespace {

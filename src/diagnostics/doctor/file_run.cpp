@@ -12,7 +12,7 @@
 #include "g4lidar/detail/saturating.hpp"
 #include "g4lidar/recording/raw_bytes.hpp"
 #include "g4lidar/recording/reader.hpp"
-#include "g4lidar/source.hpp"
+#include "g4lidar/transport/source.hpp"
 #include "link/identity_reader.hpp"
 
 namespace g4lidar {

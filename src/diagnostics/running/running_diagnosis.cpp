@@ -8,8 +8,8 @@
 #include <span>
 #include <utility>
 
-#include "g4lidar/recording/recorded_event.hpp"
-#include "g4lidar/transport/forwarding.hpp"
+#include "g4lidar/recording/contents.hpp"
+#include "g4lidar/transport/transport.hpp"
 #include "read_times.hpp"
 #include "running_state.hpp"
 

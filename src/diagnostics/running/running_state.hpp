@@ -15,7 +15,7 @@
 #include "diagnostics/stages.hpp"
 #include "g4lidar/detail/saturating.hpp"
 #include "g4lidar/diagnostics/running_diagnosis.hpp"
-#include "g4lidar/recording/recorded_device.hpp"
+#include "g4lidar/recording/contents.hpp"
 #include "g4lidar/transport/transport.hpp"
 #include "running_scan.hpp"
 

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "driver/error_context.hpp"
-#include "g4lidar/recording/recorded_device.hpp"
+#include "g4lidar/recording/contents.hpp"
 
 namespace g4lidar {
 namespace {

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "driver/outcome_error.hpp"
-#include "g4lidar/transport/tcp_port.hpp"
+#include "transport/tcp_port.hpp"
 
 namespace g4lidar {
 namespace {

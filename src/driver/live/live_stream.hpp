@@ -10,7 +10,7 @@
 #include "driver/spin_up.hpp"
 #include "g4lidar/core/model.hpp"
 #include "g4lidar/lidar_options.hpp"
-#include "g4lidar/recording/recorded_event.hpp"
+#include "g4lidar/recording/contents.hpp"
 #include "link/connection.hpp"
 #include "link/device_link.hpp"
 #include "link/identity_reader.hpp"

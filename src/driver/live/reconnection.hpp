@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "driver/error_context.hpp"
-#include "g4lidar/device_information.hpp"
+#include "g4lidar/settings.hpp"
 #include "link/connection.hpp"
 
 namespace g4lidar {

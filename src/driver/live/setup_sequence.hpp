@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <utility>
 
-#include "g4lidar/core/session/model_requests.hpp"
+#include "g4lidar/core/request.hpp"
 #include "g4lidar/lidar.hpp"
 
 namespace g4lidar {

@@ -6,7 +6,7 @@
 #include <chrono>
 #include <utility>
 
-#include "g4lidar/detail/enumerators.hpp"
+#include "core/enumerators.hpp"
 #include "reader_thread.hpp"
 #include "recording/play/played_file.hpp"
 

@@ -12,7 +12,7 @@
 
 #include "driver/driver.hpp"
 #include "g4lidar/background_reader.hpp"
-#include "g4lidar/wall_clock.hpp"
+#include "g4lidar/core/wall_clock.hpp"
 #include "reader_output.hpp"
 #include "reader_requests.hpp"
 

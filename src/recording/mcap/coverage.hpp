@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "g4lidar/detail/saturating.hpp"
-#include "g4lidar/recording/digest.hpp"
+#include "g4lidar/recording/contents.hpp"
 
 namespace g4lidar {
 

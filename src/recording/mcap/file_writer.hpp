@@ -12,9 +12,9 @@
 #include <vector>
 
 #include "coverage.hpp"
+#include "g4lidar/core/wall_clock.hpp"
 #include "g4lidar/detail/saturating.hpp"
 #include "g4lidar/recording/writer.hpp"
-#include "g4lidar/wall_clock.hpp"
 #include "mcap_file.hpp"
 #include "messages.hpp"
 #include "metadata.hpp"

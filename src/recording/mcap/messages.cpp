@@ -6,9 +6,9 @@
 #include <charconv>
 #include <cmath>
 
+#include "core/enumerators.hpp"
 #include "g4lidar/core/model.hpp"
 #include "g4lidar/core/response.hpp"
-#include "g4lidar/detail/enumerators.hpp"
 #include "g4lidar/message/ros_messages.hpp"
 #include "g4lidar/recording/raw_bytes.hpp"
 #include "message/cdr.hpp"

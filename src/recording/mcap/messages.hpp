@@ -11,7 +11,7 @@
 
 #include "g4lidar/core/bytes.hpp"
 #include "g4lidar/motion.hpp"
-#include "g4lidar/recording/recorded_event.hpp"
+#include "g4lidar/recording/contents.hpp"
 #include "g4lidar/scan.hpp"
 #include "record_text.hpp"
 

@@ -8,8 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "g4lidar/recording/digest.hpp"
-#include "g4lidar/recording/recorded_device.hpp"
+#include "g4lidar/recording/contents.hpp"
 #include "record_text.hpp"
 
 namespace g4lidar::mcap {

@@ -9,7 +9,7 @@
 #include <string_view>
 
 #include "g4lidar/error.hpp"
-#include "g4lidar/recording/stream_head.hpp"
+#include "g4lidar/recording/raw_bytes.hpp"
 #include "survey/stream_survey.hpp"
 #include "transport/owned_fd.hpp"
 

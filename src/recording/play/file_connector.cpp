@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "g4lidar/recording/replay.hpp"
+#include "g4lidar/recording/reader.hpp"
 #include "played_file.hpp"
 
 namespace g4lidar {

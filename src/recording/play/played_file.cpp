@@ -9,7 +9,7 @@
 #include <ctime>
 #include <new>
 
-#include "g4lidar/recording/replay.hpp"
+#include "g4lidar/recording/reader.hpp"
 
 namespace g4lidar {
 namespace {

@@ -13,11 +13,10 @@
 
 #include "g4lidar/core/model.hpp"
 #include "g4lidar/detail/saturating.hpp"
+#include "g4lidar/recording/contents.hpp"
 #include "g4lidar/recording/player.hpp"
 #include "g4lidar/recording/reader.hpp"
-#include "g4lidar/recording/recorded_device.hpp"
-#include "g4lidar/recording/recorded_event.hpp"
-#include "g4lidar/transport/connector.hpp"
+#include "g4lidar/transport/transport.hpp"
 #include "playback_clock.hpp"
 #include "transport/fd_port.hpp"
 

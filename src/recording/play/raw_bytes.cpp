@@ -18,7 +18,7 @@
 #include "byte_survey.hpp"
 #include "counted_items.hpp"
 #include "g4lidar/core/model_choice.hpp"
-#include "g4lidar/recording/recorded_event.hpp"
+#include "g4lidar/recording/contents.hpp"
 #include "g4lidar/transport/transport.hpp"
 #include "played_file.hpp"
 #include "recording/mcap/format.hpp"

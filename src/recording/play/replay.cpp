@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A recording that is played.
-#include "g4lidar/recording/replay.hpp"
+#include "g4lidar/recording/reader.hpp"
 
 #include <cerrno>
 #include <functional>

@@ -24,7 +24,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "g4lidar/sim/arithmetic.hpp"
+#include "sim/arithmetic.hpp"
 
 namespace g4lidar::sim {
 namespace {

@@ -6,8 +6,8 @@
 #include <optional>
 
 #include "g4lidar/core/angle.hpp"
-#include "g4lidar/sim/arithmetic.hpp"
 #include "g4lidar/sim/ray_caster.hpp"
+#include "sim/arithmetic.hpp"
 
 namespace g4lidar::sim {
 

@@ -10,7 +10,7 @@
 #include "beam.hpp"
 #include "g4lidar/core/angle.hpp"
 #include "g4lidar/detail/saturating.hpp"
-#include "g4lidar/sim/arithmetic.hpp"
+#include "sim/arithmetic.hpp"
 
 namespace g4lidar::sim {
 namespace {

@@ -5,7 +5,7 @@
 // ray_caster, so that its result is the same.
 #include "sim/exact.hpp"
 
-#include "g4lidar/sim/scene_caster.hpp"
+#include "g4lidar/sim/ray_caster.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -14,7 +14,7 @@
 #include "beam.hpp"
 #include "g4lidar/core/angle.hpp"
 #include "g4lidar/detail/saturating.hpp"
-#include "g4lidar/sim/arithmetic.hpp"
+#include "sim/arithmetic.hpp"
 
 namespace g4lidar::sim {
 namespace {

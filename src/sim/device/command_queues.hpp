@@ -9,7 +9,7 @@
 
 #include "g4lidar/core/bytes.hpp"
 #include "g4lidar/core/command.hpp"
-#include "g4lidar/sim/fault.hpp"
+#include "g4lidar/sim/device.hpp"
 #include "line_receiver.hpp"
 #include "ring.hpp"
 #include "settings.hpp"

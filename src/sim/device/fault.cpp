@@ -2,14 +2,14 @@
 // The kinds of fault in one table, and the parser of their text form.
 #include "sim/exact.hpp"
 
-#include "g4lidar/sim/fault.hpp"
+#include "g4lidar/sim/device.hpp"
 
 #include <array>
 #include <cstddef>
 #include <optional>
 #include <utility>
 
-#include "g4lidar/detail/enumerators.hpp"
+#include "core/enumerators.hpp"
 #include "sim/read_time.hpp"
 #include "sim/world/world_text.hpp"
 

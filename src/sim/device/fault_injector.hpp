@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "g4lidar/sim/fault.hpp"
+#include "g4lidar/sim/device.hpp"
 #include "g4lidar/sim/random.hpp"
 
 namespace g4lidar::sim {

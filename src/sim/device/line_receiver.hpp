@@ -6,7 +6,7 @@
 #include <array>
 #include <cstdint>
 
-#include "g4lidar/sim/fault.hpp"
+#include "g4lidar/sim/device.hpp"
 #include "g4lidar/sim/random.hpp"
 
 namespace g4lidar::sim {

@@ -10,7 +10,7 @@
 #include <string_view>
 
 #include "g4lidar/sim/device_options.hpp"
-#include "g4lidar/sim/wire_format.hpp"
+#include "g4lidar/sim/scanner.hpp"
 
 namespace g4lidar::sim {
 

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "g4lidar/sim/fault.hpp"
+#include "g4lidar/sim/device.hpp"
 #include "g4lidar/sim/scanner.hpp"
 #include "ring.hpp"
 #include "settings.hpp"

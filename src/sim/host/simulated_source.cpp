@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "g4lidar/sim/simulated_source.hpp"
+#include "g4lidar/sim/setup.hpp"
 
 #include <chrono>
 #include <string>
 #include <utility>
 #include <variant>
-
-#include "g4lidar/sim/setup.hpp"
 
 namespace g4lidar::sim {
 namespace {

@@ -10,7 +10,7 @@
 #include <numbers>
 
 #include "g4lidar/detail/saturating.hpp"
-#include "g4lidar/sim/arithmetic.hpp"
+#include "sim/arithmetic.hpp"
 #include "sim/purpose.hpp"
 
 namespace g4lidar::sim {

@@ -4,14 +4,14 @@
 // sides, so that no coordinate passes the values between which it is.
 #include "sim/exact.hpp"
 
-#include "g4lidar/sim/path.hpp"
+#include "g4lidar/sim/world.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cassert>
 
 #include "g4lidar/detail/saturating.hpp"
-#include "g4lidar/sim/arithmetic.hpp"
+#include "sim/arithmetic.hpp"
 
 namespace g4lidar::sim {
 namespace {

@@ -14,7 +14,7 @@
 #include <span>
 #include <utility>
 
-#include "g4lidar/sim/arithmetic.hpp"
+#include "sim/arithmetic.hpp"
 #include "world_text.hpp"
 
 namespace g4lidar::sim {

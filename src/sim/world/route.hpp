@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "g4lidar/detail/api.hpp"
-#include "g4lidar/sim/path.hpp"
 #include "g4lidar/sim/world.hpp"
 
 namespace g4lidar::sim {

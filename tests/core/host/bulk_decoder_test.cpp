@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The bulk decoder, with each instruction set, compared with decode() with the exact correction:
 // the same points for every input, every division of it, and every size of the output.
-#include "g4lidar/bulk_decoder.hpp"
+#include "g4lidar/recording/bulk_decoder.hpp"
 
 #include <gtest/gtest.h>
 

@@ -19,11 +19,11 @@
 #include <variant>
 #include <vector>
 
-#include "g4lidar/bulk_decoder.hpp"
 #include "g4lidar/core/correction.hpp"
 #include "g4lidar/core/decode.hpp"
 #include "g4lidar/core/stream_counter.hpp"
 #include "g4lidar/core/stream_parser.hpp"
+#include "g4lidar/recording/bulk_decoder.hpp"
 #include "support/reference_points.hpp"
 #include "support/scan_cutter.hpp"
 

@@ -15,11 +15,11 @@
 #include <variant>
 #include <vector>
 
-#include "g4lidar/bulk_decoder.hpp"
 #include "g4lidar/core/ct_information.hpp"
 #include "g4lidar/core/model.hpp"
 #include "g4lidar/core/response.hpp"
 #include "g4lidar/core/stream_parser.hpp"
+#include "g4lidar/recording/bulk_decoder.hpp"
 #include "support/reference_points.hpp"
 
 namespace g4lidar {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // An owned scan: it has all data of the view, and its points outlive the assembler's storage.
-#include "g4lidar/owned_scan.hpp"
+#include "g4lidar/lidar.hpp"
 
 #include <gtest/gtest.h>
 

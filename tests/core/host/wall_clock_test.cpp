@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // From the monotonic clock to the wall clock, with clocks that the test sets.
-#include "g4lidar/wall_clock.hpp"
+#include "g4lidar/core/wall_clock.hpp"
 
 #include <gtest/gtest.h>
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "g4lidar/diagnostics/diagnostic_run.hpp"
+#include "g4lidar/diagnostics/diagnosis.hpp"
 #include "g4lidar/discovery.hpp"
 #include "g4lidar/lidar.hpp"
 #include "g4lidar/sim/pty_port.hpp"

@@ -15,7 +15,7 @@
 #include <utility>
 #include <vector>
 
-#include "g4lidar/transport/forwarding.hpp"
+#include "g4lidar/transport/transport.hpp"
 #include "support/allocation_count.hpp"
 #include "support/patience.hpp"
 #include "support/virtual_transport.hpp"

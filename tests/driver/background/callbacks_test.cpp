@@ -23,7 +23,7 @@
 #include "g4lidar/diagnostics/running_diagnosis.hpp"
 #include "g4lidar/sim/pty_port.hpp"
 #include "g4lidar/sim/world.hpp"
-#include "g4lidar/transport/connector.hpp"
+#include "g4lidar/transport/transport.hpp"
 #include "reader_record.hpp"
 #include "recording/recorded_run.hpp"
 #include "support/patience.hpp"

@@ -13,7 +13,7 @@
 #include <thread>
 #include <vector>
 
-#include "g4lidar/transport/connector.hpp"
+#include "g4lidar/transport/transport.hpp"
 #include "listening_reader.hpp"
 
 namespace g4lidar::test {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Odometry in time with points: that of a list, and that of a simulated robot, whose way is known.
-#include "g4lidar/odometry_feed.hpp"
+#include "g4lidar/motion/odometry_feed.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "g4lidar/lidar_options.hpp"
-#include "g4lidar/sim/simulated_source.hpp"
-#include "g4lidar/standby.hpp"
+#include "g4lidar/sim/setup.hpp"
+#include "service/standby.hpp"
 
 namespace g4lidar::test {
 namespace {

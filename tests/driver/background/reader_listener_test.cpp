@@ -18,7 +18,7 @@
 #include "g4lidar/background_reader.hpp"
 #include "g4lidar/sim/pty_port.hpp"
 #include "g4lidar/sim/world.hpp"
-#include "g4lidar/transport/connector.hpp"
+#include "g4lidar/transport/transport.hpp"
 #include "listening_reader.hpp"
 #include "reader_record.hpp"
 #include "recording/recorded_run.hpp"

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <utility>
 
-#include "g4lidar/transport/forwarding.hpp"
+#include "g4lidar/transport/transport.hpp"
 #include "model_bench.hpp"
 
 namespace g4lidar {

@@ -13,7 +13,6 @@
 #include "g4lidar/core/model.hpp"
 #include "g4lidar/lidar.hpp"
 #include "g4lidar/recording/reader.hpp"
-#include "g4lidar/recording/replay.hpp"
 #include "g4lidar/recording/writer.hpp"
 #include "g4lidar/sim/virtual_port.hpp"
 #include "g4lidar/sim/world.hpp"

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "g4lidar/diagnostics/diagnostic_message.hpp"
+#include "g4lidar/diagnostics/diagnosis.hpp"
 #include "g4lidar/diagnostics/running_diagnosis.hpp"
 #include "support/virtual_transport.hpp"
 

@@ -19,10 +19,10 @@
 #include "g4lidar/core/correction.hpp"
 #include "g4lidar/core/decode.hpp"
 #include "g4lidar/core/packet.hpp"
-#include "g4lidar/deskew.hpp"
+#include "g4lidar/motion/deskew.hpp"
+#include "g4lidar/motion/twist_estimator.hpp"
 #include "g4lidar/sim/odometry.hpp"
 #include "g4lidar/sim/scanner.hpp"
-#include "g4lidar/twist_estimator.hpp"
 #include "motion/twist_errors.hpp"
 #include "support/test_scale.hpp"
 

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "family_stream.hpp"
-#include "g4lidar/core/ct_check.hpp"
+#include "g4lidar/core/ct_information.hpp"
 #include "support/crc_reference.hpp"
 
 namespace g4lidar {

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "family_stream.hpp"
-#include "g4lidar/bulk_decoder.hpp"
+#include "g4lidar/recording/bulk_decoder.hpp"
 #include "support/decode_as.hpp"
 
 namespace g4lidar {

@@ -14,7 +14,7 @@
 #include "g4lidar/core/model.hpp"
 #include "g4lidar/diagnostics/diagnosis.hpp"
 #include "g4lidar/discovery.hpp"
-#include "g4lidar/transport/connector.hpp"
+#include "g4lidar/transport/transport.hpp"
 
 namespace g4_tool::acceptance {
 

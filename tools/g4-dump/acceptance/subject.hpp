@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "g4lidar/device_information.hpp"
+#include "g4lidar/settings.hpp"
 #include "kept_settings.hpp"
 #include "kit.hpp"
 #include "link.hpp"

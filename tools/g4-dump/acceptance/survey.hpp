@@ -8,11 +8,10 @@
 #include <optional>
 #include <vector>
 
-#include "g4lidar/bulk_decoder.hpp"
-#include "g4lidar/core/ct_check.hpp"
 #include "g4lidar/core/ct_information.hpp"
 #include "g4lidar/core/model.hpp"
 #include "g4lidar/core/stream_counter.hpp"
+#include "g4lidar/recording/bulk_decoder.hpp"
 
 namespace g4_tool::acceptance {
 

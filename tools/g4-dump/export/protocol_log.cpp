@@ -7,7 +7,7 @@
 #include <variant>
 
 #include "g4lidar/core/command.hpp"
-#include "g4lidar/export/printable.hpp"
+#include "g4lidar/error.hpp"
 #include "value_text.hpp"
 
 namespace g4_tool {

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "g4lidar/core/wall_clock.hpp"
 #include "g4lidar/filter.hpp"
-#include "g4lidar/wall_clock.hpp"
 #include "io/far_times.hpp"
 
 namespace g4_tool {

@@ -10,10 +10,10 @@
 #include <span>
 #include <vector>
 
+#include "g4lidar/filter/too_near.hpp"
 #include "g4lidar/motion.hpp"
 #include "g4lidar/point.hpp"
 #include "g4lidar/scan_shaper.hpp"
-#include "g4lidar/too_near.hpp"
 #include "io/text_sink.hpp"
 #include "point_writer.hpp"
 #include "time_shift.hpp"

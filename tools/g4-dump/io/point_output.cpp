@@ -10,8 +10,8 @@
 
 #include "cli/exit_code.hpp"
 #include "cli/logger.hpp"
-#include "g4lidar/source.hpp"
-#include "g4lidar/wall_clock.hpp"
+#include "g4lidar/core/wall_clock.hpp"
+#include "g4lidar/transport/source.hpp"
 #include "io/far_times.hpp"
 #include "io/input.hpp"
 #include "io/shape_files.hpp"

@@ -10,7 +10,7 @@
 
 #include "cli/common_options.hpp"
 #include "export/shaping_writer.hpp"
-#include "g4lidar/export/mask.hpp"
+#include "g4lidar/options/filter_text.hpp"
 #include "io/output.hpp"
 #include "output_form.hpp"
 

@@ -15,7 +15,7 @@
 #include "cli/logger.hpp"
 #include "cli/rows.hpp"
 #include "g4lidar/motion.hpp"
-#include "g4lidar/odometry_feed.hpp"
+#include "g4lidar/motion/odometry_feed.hpp"
 #include "g4lidar/recording/reader.hpp"
 #include "io/command_files.hpp"
 #include "io/interrupt.hpp"

@@ -20,7 +20,7 @@
 #include "cli/exit_code.hpp"
 #include "cli/logger.hpp"
 #include "g4lidar/recording/writer.hpp"
-#include "g4lidar/transport/forwarding.hpp"
+#include "g4lidar/transport/transport.hpp"
 #include "io/command_files.hpp"
 #include "io/command_source.hpp"
 #include "io/interrupt.hpp"

@@ -16,7 +16,6 @@
 #include "cli/exit_code.hpp"
 #include "cli/logger.hpp"
 #include "g4lidar/recording/raw_bytes.hpp"
-#include "g4lidar/recording/raw_copy.hpp"
 #include "g4lidar/recording/writer.hpp"
 #include "g4lidar/transport/transport.hpp"
 #include "io/input.hpp"

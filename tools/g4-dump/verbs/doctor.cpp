@@ -17,7 +17,7 @@
 #include "cli/common_options.hpp"
 #include "cli/exit_code.hpp"
 #include "cli/logger.hpp"
-#include "g4lidar/diagnostics/diagnostic_run.hpp"
+#include "g4lidar/diagnostics/diagnosis.hpp"
 #include "io/command_source.hpp"
 #include "io/interrupt.hpp"
 #include "io/output.hpp"

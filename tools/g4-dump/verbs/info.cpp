@@ -13,11 +13,10 @@
 
 #include "cli/exit_code.hpp"
 #include "cli/settings.hpp"
-#include "g4lidar/core/session/model_requests.hpp"
+#include "g4lidar/core/request.hpp"
 #include "g4lidar/lidar_options.hpp"
 #include "g4lidar/recording/reader.hpp"
-#include "g4lidar/recording/replay.hpp"
-#include "g4lidar/source.hpp"
+#include "g4lidar/transport/source.hpp"
 #include "io/command_source.hpp"
 #include "io/interrupt.hpp"
 #include "io/output.hpp"

@@ -7,7 +7,7 @@
 #include <tuple>
 #include <utility>
 
-#include "g4lidar/source.hpp"
+#include "g4lidar/transport/source.hpp"
 #include "io/point_run.hpp"
 #include "verbs/verbs.hpp"
 

@@ -12,7 +12,7 @@
 
 #include "cli/common_options.hpp"
 #include "cli/named_sources.hpp"
-#include "g4lidar/owned_scan.hpp"
+#include "g4lidar/lidar.hpp"
 #include "io/interrupt.hpp"
 #include "io/output.hpp"
 #include "io/service_source.hpp"

@@ -11,8 +11,8 @@
 #include <utility>
 
 #include "cli/logger.hpp"
+#include "g4lidar/lidar.hpp"
 #include "g4lidar/lidar_service.hpp"
-#include "g4lidar/owned_scan.hpp"
 #include "wake_descriptor.hpp"
 
 namespace g4_tool {

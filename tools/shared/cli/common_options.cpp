@@ -11,7 +11,7 @@
 #include <variant>
 #include <vector>
 
-#include "g4lidar/filter_text.hpp"
+#include "g4lidar/options/filter_text.hpp"
 #include "io/command_files.hpp"
 #include "logger.hpp"
 

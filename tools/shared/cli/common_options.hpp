@@ -11,14 +11,14 @@
 #include <vector>
 
 #include "exit_code.hpp"
-#include "g4lidar/filter_text.hpp"
+#include "g4lidar/filter/too_near.hpp"
 #include "g4lidar/grid.hpp"
 #include "g4lidar/lidar_options.hpp"
 #include "g4lidar/motion.hpp"
+#include "g4lidar/options/filter_text.hpp"
 #include "g4lidar/point.hpp"
 #include "g4lidar/recording/writer.hpp"
 #include "g4lidar/scan_shaper.hpp"
-#include "g4lidar/too_near.hpp"
 #include "rows.hpp"
 #include "verbs.hpp"
 #include "written_form.hpp"
@@ -80,7 +80,7 @@ struct common_options : filter_settings {
 
 using shared_options = std::shared_ptr<common_options>;
 
-/// The argument SOURCE: see source.hpp.
+/// The argument SOURCE: see transport/source.hpp.
 [[nodiscard]] option_row source_argument(common_options& options);
 /// --force, of each verb that writes a file.
 [[nodiscard]] option_row force_row();

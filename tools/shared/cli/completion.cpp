@@ -12,7 +12,7 @@
 
 #include "common_options.hpp"
 #include "g4lidar/discovery.hpp"
-#include "g4lidar/sim/fault.hpp"
+#include "g4lidar/sim/device.hpp"
 #include "rows.hpp"
 #include "settings.hpp"
 #include "verbs.hpp"

@@ -10,7 +10,7 @@
 #include <string_view>
 
 #include "exit_code.hpp"
-#include "g4lidar/export/printable.hpp"
+#include "g4lidar/error.hpp"
 
 namespace g4_tool {
 

@@ -7,7 +7,7 @@
 #include <set>
 
 #include "common_options.hpp"
-#include "g4lidar/source.hpp"
+#include "g4lidar/transport/source.hpp"
 #include "logger.hpp"
 #include "rows.hpp"
 

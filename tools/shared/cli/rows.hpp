@@ -21,8 +21,8 @@
 #include <utility>
 #include <vector>
 
-#include "g4lidar/filter_text.hpp"
-#include "g4lidar/option_table.hpp"
+#include "g4lidar/options/filter_text.hpp"
+#include "g4lidar/options/option_table.hpp"
 #include "suggestion.hpp"
 #include "verbs.hpp"
 

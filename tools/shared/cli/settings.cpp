@@ -9,8 +9,8 @@
 #include <variant>
 
 #include "exit_code.hpp"
-#include "g4lidar/core/session/model_requests.hpp"
-#include "g4lidar/lidar_parameters.hpp"
+#include "g4lidar/core/request.hpp"
+#include "g4lidar/options/lidar_parameters.hpp"
 #include "logger.hpp"
 #include "rows.hpp"
 

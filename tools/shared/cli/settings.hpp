@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "g4lidar/lidar.hpp"
-#include "g4lidar/lidar_parameters.hpp"
-#include "g4lidar/setting_table.hpp"
+#include "g4lidar/options/lidar_parameters.hpp"
+#include "g4lidar/options/option_table.hpp"
 
 namespace g4_tool {
 

@@ -15,7 +15,7 @@
 #include "cli/exit_code.hpp"
 #include "cli/logger.hpp"
 #include "cli/named_sources.hpp"
-#include "g4lidar/source.hpp"
+#include "g4lidar/transport/source.hpp"
 #include "output.hpp"
 
 namespace g4_tool {

@@ -17,7 +17,7 @@
 #include "cli/exit_code.hpp"
 #include "cli/logger.hpp"
 #include "g4lidar/core/layout_recogniser.hpp"
-#include "g4lidar/diagnostics/diagnostic_run.hpp"
+#include "g4lidar/diagnostics/diagnosis.hpp"
 #include "g4lidar/recording/raw_bytes.hpp"
 
 namespace g4_tool {

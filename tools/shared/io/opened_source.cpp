@@ -8,7 +8,7 @@
 
 #include "cli/exit_code.hpp"
 #include "cli/logger.hpp"
-#include "g4lidar/transport/forwarding.hpp"
+#include "g4lidar/transport/transport.hpp"
 #include "input.hpp"
 #include "interrupt.hpp"
 #include "source.hpp"

@@ -7,7 +7,7 @@
 
 #include "cli/logger.hpp"
 #include "cli/rows.hpp"
-#include "g4lidar/source.hpp"
+#include "g4lidar/transport/source.hpp"
 #include "input.hpp"
 #include "output.hpp"
 #include "shape_files.hpp"

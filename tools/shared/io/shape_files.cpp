@@ -12,7 +12,7 @@
 #include <variant>
 
 #include "cli/exit_code.hpp"
-#include "g4lidar/odometry_feed.hpp"
+#include "g4lidar/motion/odometry_feed.hpp"
 #include "input.hpp"
 #include "odometry_text.hpp"
 

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "cli/common_options.hpp"
-#include "g4lidar/export/mask.hpp"
 #include "g4lidar/motion.hpp"
+#include "g4lidar/options/filter_text.hpp"
 #include "g4lidar/scan_shaper.hpp"
 
 namespace g4_tool {

@@ -15,7 +15,7 @@
 #include "command_files.hpp"
 #include "g4lidar/core/model_choice.hpp"
 #include "g4lidar/recording/raw_bytes.hpp"
-#include "g4lidar/transport/forwarding.hpp"
+#include "g4lidar/transport/transport.hpp"
 #include "input.hpp"
 #include "interrupt.hpp"
 

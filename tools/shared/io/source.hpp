@@ -12,13 +12,11 @@
 
 #include "cli/common_options.hpp"
 #include "g4lidar/lidar.hpp"
+#include "g4lidar/recording/raw_bytes.hpp"
 #include "g4lidar/recording/reader.hpp"
-#include "g4lidar/recording/replay.hpp"
-#include "g4lidar/recording/stream_head.hpp"
 #include "g4lidar/sim/setup.hpp"
-#include "g4lidar/sim/simulated_source.hpp"
-#include "g4lidar/source.hpp"
-#include "g4lidar/transport/connector.hpp"
+#include "g4lidar/transport/source.hpp"
+#include "g4lidar/transport/transport.hpp"
 
 namespace g4_tool {
 

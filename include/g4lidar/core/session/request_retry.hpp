@@ -9,7 +9,6 @@
 #include "g4lidar/core/model.hpp"
 #include "g4lidar/core/request.hpp"
 #include "g4lidar/core/response.hpp"
-#include "g4lidar/core/session/model_requests.hpp"
 
 namespace g4lidar {
 
