@@ -35,7 +35,7 @@ namespace g4lidar {
   about.add(" (").add(which.bauds[0]);
   if (which.bauds[1] != 0) about.add(" or ").add(which.bauds[1]);
   about.add(" baud)");
-  const std::uint32_t used = on.is_open() ? on.on().baud() : 0;
+  const std::uint32_t used = on.is_open() ? on.port().baud() : 0;
   if (used == 0 || (used == which.bauds[0] && which.bauds[1] == 0)) return about;
   return about.add(" at ").add(used).add(" baud");
 }

@@ -75,7 +75,7 @@ void point_pipeline::add(packet_view packet) noexcept {
   open_ = decoder_.decode(packet, input_.arrival_ns(), input_.unparsed().size(),
                           fits ? room.first<max_samples>() : std::span(spare_), lost);
   points_ += open_.points.size();
-  if (auto* const made = ring_.find()) made->ring.push(open_.points);
+  if (auto* const made = ring_.if_made()) made->ring.push(open_.points);
   if (stream_counts_.crc.last() == ct_check::result::mismatch) assembler_.crc_mismatch();
   if (lost) assembler_.lost();  // whole packets are missing, so no bytes were skipped
   is_open_ = true;
@@ -91,13 +91,13 @@ void point_pipeline::keep(const scan& found) noexcept {
 }
 
 ring_read point_pipeline::read(std::span<point> out) noexcept {
-  if (ring_.find() == nullptr) {
+  if (ring_.if_made() == nullptr) {
     lidar_ring& first = ring();
     if (scan_) first.push(scan_->points);
     first.push(assembler_.unfinished());
     if (is_open_) first.push(open_.points);
   }
-  return ring_.get().reader.read(out);
+  return ring_.made_once().reader.read(out);
 }
 
 void point_pipeline::begin(std::uint32_t sample_rate_hz, bool counts_times) noexcept {

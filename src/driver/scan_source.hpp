@@ -120,7 +120,7 @@ class scan_source {
   [[nodiscard]] std::int64_t now_ns() const noexcept { return connection_.now_ns(); }
   void report(lidar_event::kind what, problem reason = problem::timeout) noexcept {
     events_.put({what, reason, now_ns()});
-    if (what == lidar_event::kind::other_number) recognised_.record(connection_.from());
+    if (what == lidar_event::kind::other_number) recognised_.record(connection_.port_connector());
   }
 
   /// The motor is started: the first scan comes when it has spun up.

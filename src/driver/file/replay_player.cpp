@@ -41,8 +41,8 @@ replay_player::replay_player(parts& of, const lidar_options& options)
 
 result<void> replay_player::open() {
   if (auto opened = connection_.open(); !opened) return opened;
-  recording_hook* const hook = recording_hook_of(connection_.from());
-  file_ = file_of(connection_.from());
+  recording_hook* const hook = recording_hook_of(connection_.port_connector());
+  file_ = file_of(connection_.port_connector());
   source_ = hook != nullptr ? hook->events() : nullptr;
   if (source_ == nullptr) {
     stated_.recorder = hook;
@@ -52,7 +52,7 @@ result<void> replay_player::open() {
   }
   if (file_ != nullptr) file_->controls().when_moved([this] { follow_seek(); });
   receiver_.reset(0, 0, now_ns());
-  pipeline_.follow(connection_.on().baud());
+  pipeline_.follow(connection_.port().baud());
   stage_ = stage::idle;
   if (source_ == nullptr) return {};
   information_ = source_->device().information;
@@ -137,7 +137,7 @@ result<void> replay_player::advance(std::int64_t deadline_ns) {
   }
   report_long_pause();
   const reading how = receiver_.is_batched() && is_scanning() ? reading::batched : reading::at_once;
-  const auto got = receiver_.receive(connection_.on(), how, pipeline_.input().held(),
+  const auto got = receiver_.receive(connection_.port(), how, pipeline_.input().held(),
                                      pipeline_.input().missing(), deadline_ns);
   if (!got) {
     why_ = got.error();
@@ -159,7 +159,7 @@ void replay_player::follow_samples() {
   const stream_samples seen = pipeline_.input().other();
   const recognition now = recognised_.get();
   if (seen.bytes == 0 || now.by == known_by::user) return;
-  const std::uint32_t baud = connection_.on().baud();
+  const std::uint32_t baud = connection_.port().baud();
   const model* const found = recognised_.follow(seen, baud, now.model->link == link_kind::two_way);
   if (found == nullptr) return;
   stated_.follow(*found);
@@ -219,7 +219,7 @@ void replay_player::record(recorded_event::kind what, std::optional<zero_angle> 
   stated_.recorded_zero = zero;
   if (stated_.recorder == nullptr) return;
   stated_.recorder->event({.what = what,
-                           .baud = connection_.on().baud(),
+                           .baud = connection_.port().baud(),
                            .sample_rate_hz = samples_.rate_hz,
                            .time_ns = now_ns(),
                            .name = connection_.name(),
@@ -338,7 +338,7 @@ void replay_player::follow_seek() {
   delivers_ = true;
   if (!connection_.is_open()) static_cast<void>(connection_.open());
   receiver_.reset(0, 0, now_ns());
-  if (connection_.is_open()) pipeline_.follow(connection_.on().baud(), true);
+  if (connection_.is_open()) pipeline_.follow(connection_.port().baud(), true);
   if (stage_ == stage::idle) return;
   stage_ = connection_.is_open() ? stage::playing : stage::closed;
   spin_up_.forget();

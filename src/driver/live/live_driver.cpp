@@ -99,7 +99,7 @@ std::int64_t live_driver::due_ns() const noexcept {
 // ---- the connection -------------------------------------------------------------------------------
 
 result<void> live_driver::connected() {
-  const bool was_heard = is_recognised_ || connection_.from().traits().is_searched;
+  const bool was_heard = is_recognised_ || connection_.port_connector().traits().is_searched;
   listening_ = {was_heard ? 0 : now_ns(), pipeline_.input().bytes_parsed()};
   setup_.reset_short_scans();  // the session has forgotten the scans before, too
   question_.forget_woken();

@@ -39,7 +39,7 @@ class reconnection {
   [[nodiscard]] bool wait(connection& on, std::int64_t deadline_ns) noexcept {
     if (on.now_ns() >= next_attempt_ns_) return true;
     on.pause(std::min(deadline_ns, next_attempt_ns_));
-    if (on.from().may_be_back()) {
+    if (on.port_connector().may_be_back()) {
       next_attempt_ns_ = on.now_ns();
       backoff_ns_ = first_pause_ns;
     }
