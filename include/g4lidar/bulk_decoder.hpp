@@ -74,7 +74,7 @@ class G4LIDAR_API bulk_decoder {
   /// Bytes of an unfinished packet or response.
   [[nodiscard]] std::size_t held() const noexcept { return parser_.held(); }
   /// What is added to each angle, of a model that has such an offset: what the bytes state, or what is set here with
-  /// zero_offset::known_by::user.
+  /// zero_offset::stated_by::user.
   [[nodiscard]] zero_offset& zero() noexcept { return zero_; }
   /// The same.
   [[nodiscard]] const zero_offset& zero() const noexcept { return zero_; }

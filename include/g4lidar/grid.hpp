@@ -86,6 +86,14 @@ struct grid_place {
   return {bins == 0 ? 0 : bin % bins, off < 0.0F ? -off : off};
 }
 
+/// What a bin gets where nothing came back. *Pure.*
+[[nodiscard]] constexpr float no_return_m(const grid_options& options) noexcept {
+  using limits = std::numeric_limits<float>;
+  const float longest_mm = options.longest_mm > 0.0F ? options.longest_mm : g4_model.range.max_mm;
+  if (options.no_return == no_return_as::nan) return limits::quiet_NaN();
+  return options.no_return == no_return_as::max ? longest_mm * 0.001F : limits::infinity();
+}
+
 /// Like fill_grid() below, of the points for which `takes(point, bin)` is true. `intensities` is empty,
 /// or as long as `ranges_m`, and gets those of the points that determine the ranges, 0 where none does.
 template <std::predicate<const point&, std::size_t> Takes>
@@ -129,15 +137,10 @@ constexpr void fill_grid(std::span<const point> points, std::span<float> ranges_
   }
   constexpr float nan = std::numeric_limits<float>::quiet_NaN();
   constexpr float infinity = std::numeric_limits<float>::infinity();
-  const float longest_mm = options.longest_mm > 0.0F ? options.longest_mm : g4_model.range.max_mm;
-  const auto of_no_return = [&] {
-    if (options.no_return == no_return_as::nan) return nan;
-    return options.no_return == no_return_as::max ? longest_mm * 0.001F : infinity;
-  }();
   const auto value_of = [&](const point& p) {
     switch (worth(p)) {
       case no_return:
-        return of_no_return;
+        return no_return_m(options);
       case perhaps_near:
         return options.near_is_minus_infinity ? -infinity : nan;
       case unusable:

@@ -13,7 +13,7 @@
 
 #include "context.hpp"
 #include "reading_thread.hpp"
-#include "settings.hpp"
+#include "setting_keywords.hpp"
 
 namespace g4lidar::python {
 namespace {

@@ -21,9 +21,9 @@
 #include "g4lidar/recording/writer.hpp"
 #include "g4lidar/scan_loop.hpp"
 #include "interruption.hpp"
-#include "notice.hpp"
+#include "kept_scan.hpp"
 #include "process.hpp"
-#include "scan.hpp"
+#include "readable_notice.hpp"
 
 namespace g4lidar::python {
 
@@ -134,7 +134,7 @@ class live_lidar {
   std::unique_ptr<lidar> lidar_;
   bool has_player_;
   process process_;
-  notice notice_;
+  readable_notice notice_;
   std::atomic<bool> woken_{false};  // by wake(), not by a signal
   std::atomic<bool> closed_{false};
   bool may_stop_ = false;  // started, and neither stopped nor lost

@@ -27,7 +27,7 @@
 #include "g4lidar/transport/serial_port.hpp"
 #include "interruption.hpp"
 #include "live_lidar.hpp"
-#include "settings.hpp"
+#include "setting_keywords.hpp"
 #include "simulator.hpp"
 
 namespace g4lidar::python {

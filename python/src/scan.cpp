@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "scan.hpp"
+#include "kept_scan.hpp"
 
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
+#include "enumeration_words.hpp"
 #include "errors.hpp"
 #include "g4lidar/message/ros_messages.hpp"
-#include "words.hpp"
 
 namespace g4lidar::python {
 

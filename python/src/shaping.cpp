@@ -19,12 +19,12 @@
 #include <variant>
 #include <vector>
 
+#include "enumeration_words.hpp"
 #include "errors.hpp"
 #include "g4lidar/deskew.hpp"
 #include "g4lidar/merge.hpp"
 #include "g4lidar/twist_estimator.hpp"
-#include "scan.hpp"
-#include "words.hpp"
+#include "kept_scan.hpp"
 
 namespace g4lidar::python {
 namespace {

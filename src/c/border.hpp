@@ -14,7 +14,7 @@
 #include "g4lidar/core/model.hpp"
 #include "g4lidar/error.hpp"
 #include "g4lidar/point.hpp"
-#include "options.hpp"
+#include "versioned_options.hpp"
 
 struct g4lidar_point;
 struct g4lidar_identity;

@@ -13,7 +13,7 @@
 #include "g4lidar/outliers.hpp"
 #include "g4lidar/point.hpp"
 #include "g4lidar/too_near.hpp"
-#include "options.hpp"
+#include "versioned_options.hpp"
 
 namespace g4lidar::c {
 

@@ -10,7 +10,7 @@
 #include "border.hpp"
 #include "g4lidar/recording/replay.hpp"
 #include "handles.hpp"
-#include "motion.hpp"
+#include "motion_values.hpp"
 #include "ranges.hpp"
 
 using namespace g4lidar;

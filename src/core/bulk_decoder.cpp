@@ -64,7 +64,7 @@ bulk_decoder::bulk_decoder(const model& which, instruction_set wanted) noexcept
 
 void bulk_decoder::learn(const response_view& heard) noexcept {
   const auto stated = replies_.take(heard, *which_);
-  if (stated.zero) zero_.set(*stated.zero, zero_offset::known_by::device);
+  if (stated.zero) zero_.set(*stated.zero, zero_offset::stated_by::device);
   if (!stated.firmware) return;
   which_ = &with_firmware(*named_, *stated.firmware);
   parser_.set_layout(which_->samples.layout);

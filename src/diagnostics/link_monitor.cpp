@@ -101,7 +101,7 @@ link_monitor::link_monitor(std::unique_ptr<transport> opened, std::function<bool
 // A wait that is too long is not caused by the device: this program was suspended.
 void link_monitor::listen(const std::int64_t& until_ns, const observer& to) {
   const auto take = [&](const received& got, std::int64_t took_ns) {
-    reading what{got.count, got.arrival_ns};
+    timed_read what{got.count, got.arrival_ns};
     if (took_ns > longest_read_ns + host_pause_after_ns) {
       what.host_pause_ns = took_ns;
       ++host_pauses_;

@@ -35,7 +35,7 @@ struct observed_event {
 };
 
 /// Bytes of one read.
-struct reading {
+struct timed_read {
   std::size_t count;
   std::int64_t arrival_ns;
   std::int64_t silence_ns = 0;     ///< Before them, while the program was waiting.
@@ -46,7 +46,7 @@ struct reading {
 /// Receives the observations. Either may be empty.
 struct observer {
   std::function<void(const observed_event&)> event{};
-  std::function<void(const reading&)> arrival{};
+  std::function<void(const timed_read&)> arrival{};
 };
 
 /// Splits bytes into events with their bytes, and detects boot texts. *Single thread.*

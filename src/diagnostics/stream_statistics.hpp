@@ -45,7 +45,7 @@ class stream_statistics {
       : which_(&which), is_long_(is_long) {}
 
   void take(const observed_event& observed);
-  void take(const reading& observed);
+  void take(const timed_read& observed);
 
   /// The head has reached its speed: from now on packets are evaluated, and all counts begin again.
   void begin();

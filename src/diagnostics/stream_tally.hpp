@@ -38,7 +38,7 @@ struct damage_counts {
 /// The sizes of reads, and the times without bytes.
 class arrival_statistics {
  public:
-  void take(const reading& observed);
+  void take(const timed_read& observed);
   void add(const arrival_statistics& other) noexcept;
   [[nodiscard]] std::uint64_t bytes() const noexcept { return bytes_; }
   /// Times longer than `stall_ns` without bytes, although the program was waiting.

@@ -33,7 +33,7 @@ lidar::driver::driver(std::unique_ptr<connector> from, const lidar_options& opti
       source_(make_source(parts_, options)),
       points_(largest_scan(*options.model)) {
   if (options.zero_angle)
-    parts_.pipeline.zero().set(*options.zero_angle, zero_offset::known_by::user);
+    parts_.pipeline.zero().set(*options.zero_angle, zero_offset::stated_by::user);
 }
 
 lidar::driver::~driver() { static_cast<void>(close()); }

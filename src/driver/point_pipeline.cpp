@@ -13,7 +13,7 @@ const event* point_pipeline::next() noexcept {
     if (const auto* const heard = std::get_if<response_view>(found)) {
       const auto stated = replies_.take(*heard, decoder_.like());
       if (stated.firmware) identified(*stated.firmware);
-      if (stated.zero) zero().set(*stated.zero, zero_offset::known_by::device);
+      if (stated.zero) zero().set(*stated.zero, zero_offset::stated_by::device);
     } else {
       replies_.pass();
     }

@@ -9,8 +9,8 @@
 
 namespace g4lidar {
 
-scan_merger::scan_merger(deskewing how, const std::vector<lidar>& lidars) : deskew_(how) {
-  for (const lidar& each : lidars) {
+scan_merger::scan_merger(deskewing how, const std::vector<merged_lidar>& lidars) : deskew_(how) {
+  for (const merged_lidar& each : lidars) {
     part& made = parts_.emplace_back();
     made.name = each.name;
     made.place = each.place;

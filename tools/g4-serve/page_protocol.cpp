@@ -7,7 +7,7 @@
 #include <cstddef>
 
 #include "cli/logger.hpp"
-#include "cli/settings.hpp"
+#include "cli/setting_words.hpp"
 #include "g4lidar/core/session/model_requests.hpp"
 #include "g4lidar/setting_table.hpp"
 #include "g4lidar/version.hpp"

@@ -16,13 +16,13 @@ namespace g4lidar {
 class zero_offset {
  public:
   /// Who knows it, the most reliable last.
-  enum class known_by : std::uint8_t {
+  enum class stated_by : std::uint8_t {
     device,     ///< The lidar has answered 93.
     recording,  ///< It was used for the points that were recorded.
     user,
   };
   /// Uses it, if nobody more reliable knows another one.
-  constexpr void set(zero_angle known, known_by how) noexcept {
+  constexpr void set(zero_angle known, stated_by how) noexcept {
     if (how < how_) return;
     angle_ = known;
     how_ = how;
@@ -44,7 +44,7 @@ class zero_offset {
 
  private:
   std::optional<zero_angle> angle_;
-  known_by how_ = known_by::device;
+  stated_by how_ = stated_by::device;
 };
 
 }  // namespace g4lidar

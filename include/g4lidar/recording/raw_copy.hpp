@@ -37,7 +37,7 @@ class G4LIDAR_API raw_copy {
 
  private:
   /// What is known of the lidar by its bytes.
-  struct knowledge {
+  struct known_lidar {
     const model* like;
     device_information who{};
     reply_watch replies{};
@@ -53,8 +53,8 @@ class G4LIDAR_API raw_copy {
 
   const model* which_;
   stream_parser parser_;
-  knowledge source_;
-  knowledge reader_;
+  known_lidar source_;
+  known_lidar reader_;
   bool begins_within_ = false;  // there is something before the first bytes that are copied
   bool has_begun_ = false;
 };

@@ -44,7 +44,7 @@ lidar_session::lidar_session(rclcpp_lifecycle::LifecycleNode& node, lidar_topics
     guard(node_, [&] { made = ahead_by(*clock, wall_ahead_ns); });
     return made;
   };
-  how.other_odometry = std::bind_front(&robot_motion::take, &motion_);
+  how.other_odometry = std::bind_front(&odometry_publisher::take, &motion_);
   constexpr auto by = g4lidar::delivery::in_reader;
   auto made =
       g4lidar::lidar_service::make(options_.lidars, std::move(how), {{&motion_, by}, {this, by}});

@@ -15,7 +15,7 @@
 #include <rclcpp_lifecycle/lifecycle_node.hpp>
 
 #include "g4lidar/lidar_service.hpp"
-#include "robot_motion.hpp"
+#include "odometry_publisher.hpp"
 #include "topics.hpp"
 
 namespace g4lidar_ros {
@@ -90,7 +90,7 @@ class lidar_session final : private g4lidar::service_sink {
   lidar_topics& topics_;
   session_options options_;
   const bool is_file_;
-  robot_motion motion_;
+  odometry_publisher motion_;
   std::atomic<bool> is_standby_ = false;
   std::atomic<bool> is_news_ = false;
   std::mutex mutex_;

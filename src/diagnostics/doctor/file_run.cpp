@@ -130,8 +130,8 @@ class file_run {
   void take(bytes data, std::int64_t arrival_ns) {
     // Before a scan runs, silence is not a stall; only recordings show how long it lasted.
     const bool follows = is_judging_ && arrival_ns > 0 && arrival_ns_ > 0;
-    measured_.take(reading{data.size(), arrival_ns,
-                           follows ? detail::saturating_sub(arrival_ns, arrival_ns_) : 0});
+    measured_.take(timed_read{data.size(), arrival_ns,
+                              follows ? detail::saturating_sub(arrival_ns, arrival_ns_) : 0});
     arrival_ns_ = arrival_ns;
     survey_.received(data);
     splitter_.take(data, arrival_ns, to_);

@@ -68,7 +68,7 @@ class observed_transport final : public forwarding_transport {
 
  private:
   void take(const received& got, std::span<const std::uint8_t> out, std::int64_t now_ns) noexcept {
-    const reading what = times_.take(got.count, got.arrival_ns, got.count == out.size());
+    const timed_read what = times_.take(got.count, got.arrival_ns, got.count == out.size());
     into_->received(what, bytes(out).first(got.count), now_ns);
   }
 

@@ -77,8 +77,8 @@ void running_scan::sent(bytes data, std::int64_t now_ns, std::int64_t silence_ns
   }
 }
 
-void running_scan::received(const reading& what, bytes data) {
-  reading known = what;
+void running_scan::received(const timed_read& what, bytes data) {
+  timed_read known = what;
   if (!is_device_) {
     known.silence_ns = time_ns_ > 0 ? detail::saturating_sub(what.arrival_ns, time_ns_) : 0;
     if (known.silence_ns >= pause_of_file_ns) enter(phase::starts);
@@ -123,7 +123,8 @@ void running_scan::take(const observed_event& found) {
     may_have_booted_ = false;
     const std::int64_t silence_ns = std::exchange(silence_ns_, 0);
     // A scan that ends is silent, too: a stall is a silence with packets behind it.
-    if (phase_ == phase::runs && silence_ns > 0) measured_.take(reading{0, time_ns_, silence_ns});
+    if (phase_ == phase::runs && silence_ns > 0)
+      measured_.take(timed_read{0, time_ns_, silence_ns});
     if (phase_ == phase::starts) enter(phase::speeds_up);
   }
   if (phase_ >= phase::speeds_up) measured_.take(found);

@@ -41,7 +41,7 @@ class running_scan {
   void end();
   /// A command was sent, after so much silence.
   void sent(bytes data, std::int64_t now_ns, std::int64_t silence_ns);
-  void received(const reading& what, bytes data);
+  void received(const timed_read& what, bytes data);
 
   [[nodiscard]] const model& which() const noexcept { return *which_; }
   [[nodiscard]] phase now() const noexcept { return phase_; }

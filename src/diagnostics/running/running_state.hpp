@@ -80,7 +80,7 @@ class running_state {
     scan_.sent(data, now_ns, silence_ns);
     follow_scan();
   }
-  void received(const reading& what, bytes data, std::int64_t now_ns) {
+  void received(const timed_read& what, bytes data, std::int64_t now_ns) {
     const std::lock_guard hold(mutex_);
     now_ns_ = now_ns;
     // A port that gives bytes is there, also where no scan runs.

@@ -266,7 +266,7 @@ bool replay_player::play_events(bool all) {
 }
 
 void replay_player::play(const recorded_event& what) {
-  if (what.zero) pipeline_.zero().set(*what.zero, zero_offset::known_by::recording);
+  if (what.zero) pipeline_.zero().set(*what.zero, zero_offset::stated_by::recording);
   switch (what.what) {
     case recorded_event::kind::opened:
       pipeline_.follow(what.baud);

@@ -98,8 +98,8 @@ class recording_writer::file_writer {
   template <class Work>
   result<void> guarded(Work work) noexcept;
   template <class Put>
-  void put(mcap::topic id, std::int64_t time_ns, std::size_t size, Put put) noexcept;
-  [[nodiscard]] bool has_channel(mcap::topic id) noexcept;
+  void put(mcap::channel_id id, std::int64_t time_ns, std::size_t size, Put put) noexcept;
+  [[nodiscard]] bool has_channel(mcap::channel_id id) noexcept;
   void begin_chunk(std::int64_t time_ns);
   [[nodiscard]] result<void> add_transform();
   [[nodiscard]] result<void> end_chunk();

@@ -10,12 +10,12 @@
 
 #include "answerer.hpp"
 #include "bridge.hpp"
+#include "command_effects.hpp"
 #include "command_queues.hpp"
 #include "fault_injector.hpp"
 #include "g4lidar/sim/device.hpp"
 #include "host_port.hpp"
 #include "motor.hpp"
-#include "settings.hpp"
 #include "transmitter.hpp"
 
 namespace g4lidar::sim {
@@ -126,7 +126,7 @@ class G4LIDAR_HIDDEN device::machine {
 
   // Commands.
   void host_byte_arrives() noexcept;
-  void execute(const pending_command& asked_for) noexcept;
+  void execute(const due_command& asked_for) noexcept;
   [[nodiscard]] bool obey(command code) noexcept;
   [[nodiscard]] bool obey_setting(command code) noexcept;
   void use_settings() noexcept;

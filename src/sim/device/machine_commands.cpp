@@ -25,7 +25,7 @@ void device::machine::host_byte_arrives() noexcept {
                      });
 }
 
-void device::machine::execute(const pending_command& asked_for) noexcept {
+void device::machine::execute(const due_command& asked_for) noexcept {
   const bool scanning = is_scanning();
   const bool obeyed = obey(static_cast<command>(asked_for.code));
   log.add({asked_for.asked_ns, asked_for.code, obeyed, scanning});

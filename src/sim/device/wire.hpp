@@ -7,10 +7,10 @@
 #include <cstdint>
 #include <optional>
 
+#include "command_effects.hpp"
 #include "g4lidar/sim/fault.hpp"
 #include "g4lidar/sim/scanner.hpp"
 #include "ring.hpp"
-#include "settings.hpp"
 
 namespace g4lidar::sim {
 

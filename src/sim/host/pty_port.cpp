@@ -17,7 +17,7 @@
 
 #include <filesystem>
 
-#include "claim.hpp"
+#include "name_claim.hpp"
 #include "served_port.hpp"
 
 namespace g4lidar::sim {
@@ -66,7 +66,7 @@ result<owned_fd> claim_link_at(const std::string& link) {
   }
   std::array<char, 17> name{};
   std::snprintf(name.data(), name.size(), "%016llx", static_cast<unsigned long long>(hash));
-  owned_fd held = claim(name.data()).hold();
+  owned_fd held = name_claim(name.data()).hold();
   if (held) return held;
   const bool is_served = errno == EADDRINUSE;
   return failure(task::opening, is_served ? problem::busy : problem::system, link, errno);

@@ -6,7 +6,7 @@
 
 #include <string>
 
-#include "rows.hpp"
+#include "kit_rows.hpp"
 
 namespace g4_tool::acceptance {
 namespace {

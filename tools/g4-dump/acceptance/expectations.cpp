@@ -6,7 +6,7 @@
 #include <initializer_list>
 
 #include "g4lidar/core/model_record.hpp"
-#include "rows.hpp"
+#include "kit_rows.hpp"
 
 namespace g4_tool::acceptance {
 namespace {

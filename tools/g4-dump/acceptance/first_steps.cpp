@@ -7,7 +7,7 @@
 #include <map>
 #include <optional>
 
-#include "rows.hpp"
+#include "kit_rows.hpp"
 
 namespace g4_tool::acceptance {
 namespace {

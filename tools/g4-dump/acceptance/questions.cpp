@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <array>
 
-#include "rows.hpp"
+#include "kit_rows.hpp"
 
 namespace g4_tool::acceptance {
 namespace {

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <utility>
 
-#include "rows.hpp"
+#include "kit_rows.hpp"
 
 namespace g4_tool::acceptance {
 namespace {

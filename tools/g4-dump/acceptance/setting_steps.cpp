@@ -7,7 +7,7 @@
 #include <set>
 #include <string>
 
-#include "rows.hpp"
+#include "kit_rows.hpp"
 
 namespace g4_tool::acceptance {
 namespace {

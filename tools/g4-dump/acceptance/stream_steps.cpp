@@ -11,7 +11,7 @@
 #include <string_view>
 #include <utility>
 
-#include "rows.hpp"
+#include "kit_rows.hpp"
 
 namespace g4_tool::acceptance {
 namespace {

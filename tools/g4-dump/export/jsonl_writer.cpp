@@ -49,7 +49,7 @@ class jsonl_points final : public point_writer {
     }
     at = put_bool(put_text(at, ",\"no_return\":"), p.is_no_return());
     at = put_bool(put_text(at, ",\"too_near\":"), p.is_too_near());
-    for (const doubt& each : doubts) {
+    for (const doubt_name& each : doubts) {
       if (each.flag == point_flags::too_near || (p.flags & each.flag) == point_flags::none)
         continue;
       at = put_text(put_text(put_text(at, ",\""), each.name), "\":true");

@@ -54,7 +54,7 @@ class point_columns final : public point_writer {
     right(2, [](char* to) { return to; });
     right(time_width(), [&](char* to) { return put_seconds(to, p.time_ns); });
     std::string_view before = "  ";
-    for (const doubt& each : doubts) {
+    for (const doubt_name& each : doubts) {
       if ((p.flags & each.flag) == point_flags::none) continue;
       char* const words = digits::put_text(at, std::exchange(before, ", "));
       at = digits::put_text(words, each.name);

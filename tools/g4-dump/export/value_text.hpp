@@ -67,11 +67,11 @@ char* put_seconds(char* at, std::int64_t time_ns) noexcept;
   return scan.reported_frequency_dhz / 10.0;
 }
 /// A flag that makes a point doubtful, and its name in jsonl.
-struct doubt {
+struct doubt_name {
   point_flags flag;
   std::string_view name;
 };
-inline constexpr std::array<doubt, 6> doubts{{
+inline constexpr std::array<doubt_name, 6> doubts{{
     {point_flags::too_near, "too_near"},
     {point_flags::not_deskewed, "not_deskewed"},
     {point_flags::unlikely, "unlikely"},

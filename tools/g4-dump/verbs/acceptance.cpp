@@ -15,7 +15,7 @@
 #include <variant>
 #include <vector>
 
-#include "acceptance/rows.hpp"
+#include "acceptance/kit_rows.hpp"
 #include "cli/common_options.hpp"
 #include "cli/exit_code.hpp"
 #include "cli/logger.hpp"
@@ -26,8 +26,8 @@
 #include "io/interrupt.hpp"
 #include "io/output.hpp"
 #include "io/recorder.hpp"
-#include "io/source.hpp"
-#include "verbs/verbs.hpp"
+#include "io/source_word.hpp"
+#include "verbs/dump_verbs.hpp"
 
 namespace g4_tool {
 namespace {

@@ -26,7 +26,7 @@
 #include "io/read_loop.hpp"
 #include "io/recorder.hpp"
 #include "io/text_input.hpp"
-#include "verbs/verbs.hpp"
+#include "verbs/dump_verbs.hpp"
 
 namespace g4_tool {
 namespace {

@@ -9,14 +9,14 @@
 
 #include "cli/exit_code.hpp"
 #include "cli/logger.hpp"
-#include "cli/settings.hpp"
+#include "cli/setting_words.hpp"
 #include "g4lidar/core/session/model_requests.hpp"
 #include "g4lidar/lidar_parameters.hpp"
 #include "g4lidar/source.hpp"
 #include "io/command_source.hpp"
 #include "io/interrupt.hpp"
 #include "io/output.hpp"
-#include "verbs/verbs.hpp"
+#include "verbs/dump_verbs.hpp"
 
 namespace g4_tool {
 namespace {

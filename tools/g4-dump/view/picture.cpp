@@ -28,12 +28,12 @@ std::string number_or_dash(double value, std::string_view unit, int decimals) {
 }
 
 /// The worst stage, and the names of all diagnoses.
-struct verdict {
+struct overall_state {
   stage_verdict outcome = stage_verdict::ok;
   std::vector<diagnosis_info> found{};
 };
-verdict verdict_of(std::span<const stage_report> stages) {
-  verdict all;
+overall_state verdict_of(std::span<const stage_report> stages) {
+  overall_state all;
   for (const stage_report& stage : stages) {
     if (!stage.diagnoses.empty()) all.outcome = std::max(all.outcome, stage.outcome);
     for (const diagnosis what : stage.diagnoses) all.found.push_back(stage.explain(what));
@@ -46,7 +46,7 @@ ink ink_of(stage_verdict how) noexcept {
   return how == stage_verdict::warn ? ink::warn : ink::good;
 }
 
-std::string words_of(const verdict& all, std::span<const stage_report> stages) {
+std::string words_of(const overall_state& all, std::span<const stage_report> stages) {
   if (stages.empty()) return "-";
   if (all.found.empty()) return "ok";
   std::string names;
@@ -118,7 +118,7 @@ void draw_panel(canvas& on, const cell_area& in, const view_facts& facts,
                fmt::format("{:.1f} of {:.1f} s", std::max(facts.position_s, 0.0), facts.length_s));
   }
   words.fact("event", facts.event.empty() ? "-" : facts.event);
-  const verdict all = verdict_of(facts.stages);
+  const overall_state all = verdict_of(facts.stages);
   words.line("");
   words.line("doctor", ink::faint);
   words.paragraph(words_of(all, facts.stages), ink_of(all.outcome));
@@ -131,7 +131,7 @@ void draw_panel(canvas& on, const cell_area& in, const view_facts& facts,
 
 /// The most important facts in one line.
 std::string summary_of(const view_facts& facts, const view_settings& how) {
-  const verdict all = verdict_of(facts.stages);
+  const overall_state all = verdict_of(facts.stages);
   return fmt::format("{} {} {} lost {} doctor {}", how.is_frozen ? "frozen" : facts.state,
                      number_or_dash(facts.frequency_hz, " Hz", 2),
                      number_or_dash(facts.sample_rate_hz, "/s", 0),
@@ -161,7 +161,7 @@ void draw_view(canvas& on, std::span<const g4lidar::point> points, const view_fa
                const view_settings& how) {
   const bool has_panel = on.columns() >= least_columns && on.rows() >= least_rows;
   if (how.shows_help && !has_panel) return draw_help(on, {0, 0, on.columns(), on.rows()});
-  const verdict all = verdict_of(facts.stages);
+  const overall_state all = verdict_of(facts.stages);
   const int beside = has_panel ? panel_columns + 1 : 0;
   const cell_area radar{0, 0, on.columns() - beside, on.rows() - (has_panel ? 0 : 1)};
   draw_radar(on, radar, points, how.radar);

@@ -19,7 +19,7 @@
 #include "g4lidar/recording/writer.hpp"
 #include "g4lidar/scan_shaper.hpp"
 #include "g4lidar/too_near.hpp"
-#include "rows.hpp"
+#include "option_rows.hpp"
 #include "verbs.hpp"
 #include "written_form.hpp"
 

@@ -11,7 +11,7 @@
 #include "g4lidar/transport/forwarding.hpp"
 #include "input.hpp"
 #include "interrupt.hpp"
-#include "source.hpp"
+#include "source_word.hpp"
 
 namespace g4_tool {
 namespace {

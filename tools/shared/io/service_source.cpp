@@ -6,12 +6,12 @@
 #include <utility>
 
 #include "cli/logger.hpp"
-#include "cli/rows.hpp"
+#include "cli/option_rows.hpp"
 #include "g4lidar/source.hpp"
 #include "input.hpp"
 #include "output.hpp"
 #include "shape_files.hpp"
-#include "source.hpp"
+#include "source_word.hpp"
 
 namespace g4_tool {
 

@@ -10,10 +10,10 @@
 #include <utility>
 #include <vector>
 
+#include "enumeration_words.hpp"
 #include "errors.hpp"
 #include "g4lidar/setting_table.hpp"
 #include "live_lidar.hpp"
-#include "words.hpp"
 
 namespace g4lidar::python {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "source.hpp"
+#include "source_word.hpp"
 
 #include <fmt/format.h>
 #include <sys/stat.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "settings.hpp"
+#include "setting_words.hpp"
 
 #include <fmt/format.h>
 
@@ -12,7 +12,7 @@
 #include "g4lidar/core/session/model_requests.hpp"
 #include "g4lidar/lidar_parameters.hpp"
 #include "logger.hpp"
-#include "rows.hpp"
+#include "option_rows.hpp"
 
 namespace g4_tool {
 namespace {

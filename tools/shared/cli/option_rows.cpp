@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "rows.hpp"
+#include "option_rows.hpp"
 
 #include <algorithm>
 #include <initializer_list>

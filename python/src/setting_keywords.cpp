@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "settings.hpp"
+#include "setting_keywords.hpp"
 
 #include <algorithm>
 #include <cctype>

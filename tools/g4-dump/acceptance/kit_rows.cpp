@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The steps and the queries.
-#include "rows.hpp"
+#include "kit_rows.hpp"
 
 #include <algorithm>
 #include <array>
