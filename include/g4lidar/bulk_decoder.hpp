@@ -45,7 +45,7 @@ class G4LIDAR_API bulk_decoder {
   /// Uses `wanted` if this processor has it, else `portable`.
   explicit bulk_decoder(instruction_set wanted = best_instruction_set()) noexcept;
   /// For packets of this model, which is valid as long as this.
-  explicit bulk_decoder(const model& which,
+  explicit bulk_decoder(const model& model,
                         instruction_set wanted = best_instruction_set()) noexcept;
 
   /// Takes bytes from the front of `input`, writes their points to the front of `out` and returns

@@ -52,11 +52,11 @@ struct grid_options {
   /// scan it is at most the longest range of its model by the manufacturer; 0: that one, without a scan a G4's.
   float longest_mm = 0.0F;
 
-  /// The same options for a lidar like `which`. *Pure.*
-  [[nodiscard]] constexpr grid_options with(const model& which) const noexcept {
+  /// The same options for a lidar like `model`. *Pure.*
+  [[nodiscard]] constexpr grid_options with(const model& model) const noexcept {
     grid_options made = *this;
-    made.turn_deg = which.turn_deg;
-    const auto most_mm = static_cast<float>(which.range.max_mm);
+    made.turn_deg = model.turn_deg;
+    const auto most_mm = static_cast<float>(model.range.max_mm);
     if (!(longest_mm > 0.0F && longest_mm < most_mm)) made.longest_mm = most_mm;
     return made;
   }
@@ -64,8 +64,8 @@ struct grid_options {
 
 /// A number of bins that leaves few of them empty: four fifths of the samples of a revolution at
 /// 10 Hz, 720 for a G4. *Pure.*
-[[nodiscard]] constexpr std::uint32_t default_bins(const model& which) noexcept {
-  return first_rate_hz(which) * 2 / 25;
+[[nodiscard]] constexpr std::uint32_t default_bins(const model& model) noexcept {
+  return first_rate_hz(model) * 2 / 25;
 }
 
 /// The bin that contains a direction (clockwise degrees in [0, 360), as in a point) in a grid of

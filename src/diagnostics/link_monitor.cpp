@@ -89,12 +89,12 @@ void event_splitter::look_for_text(bytes raw) {
 }
 
 link_monitor::link_monitor(std::unique_ptr<transport> opened, std::function<bool()> is_cancelled,
-                           const model& which, bool is_mute)
+                           const model& model, bool is_mute)
     : transport_(std::move(opened)),
       is_cancelled_(std::move(is_cancelled)),
-      which_(&which),
+      which_(&model),
       is_mute_(is_mute),
-      splitter_(which.samples),
+      splitter_(model.samples),
       link_(splitter_.input(), transport_.get(), {.quiet_ns = quiet_ns, .drain_ns = stop_ns},
             usual_cut_off_ns) {}
 
@@ -215,11 +215,11 @@ void link_monitor::await(exchange& made, std::int64_t patience_ns) {
   made.is_disturbed |= boots() != boots_before || host_pauses_ != pauses_before;
 }
 
-void link_monitor::read_as(const model& which) {
+void link_monitor::read_as(const model& model) {
   sample_bytes_ = sample_bytes();
-  which_ = &which;
+  which_ = &model;
   boots_before_ += splitter_.boots();
-  splitter_ = event_splitter(which.samples);
+  splitter_ = event_splitter(model.samples);
   survey_.part();
   silence_ns_ = 0;
   read_ns_ = -1;

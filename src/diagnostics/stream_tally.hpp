@@ -66,9 +66,9 @@ class arrival_statistics {
 /// or a bridge that holds bytes back, makes some arrivals late and does not change the others.
 class sample_pace {
  public:
-  /// Of samples like those of `which`: the window needs their rate within a half.
-  explicit sample_pace(const model& which = g4_model) noexcept
-      : nominal_ns_(1e9 / first_rate_hz(which)) {
+  /// Of samples like those of `model`: the window needs their rate within a half.
+  explicit sample_pace(const model& model = g4_model) noexcept
+      : nominal_ns_(1e9 / first_rate_hz(model)) {
     window_.clear();
   }
 

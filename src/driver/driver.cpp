@@ -23,9 +23,9 @@ std::unique_ptr<scan_source> make_source(scan_source::parts& parts, const lidar_
 
 }  // namespace
 
-lidar::driver::driver(std::unique_ptr<connector> from, const lidar_options& options,
+lidar::driver::driver(std::unique_ptr<connector> connector, const lidar_options& options,
                       const g4lidar::recognition& known)
-    : parts_{connection(std::move(from), options.device),
+    : parts_{connection(std::move(connector), options.device),
              point_pipeline(options.tuning.transport_delay.count(), options.partial_scans,
                             *options.model),
              {},

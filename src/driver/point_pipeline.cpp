@@ -23,17 +23,17 @@ const event* point_pipeline::next() noexcept {
   return found;
 }
 
-void point_pipeline::become(const model& which, std::uint32_t baud) {
+void point_pipeline::become(const model& model, std::uint32_t baud) {
   end();
   drop_scan();
-  which_ = &which;
-  input_.become(which.samples);
-  decoder_.become(which);
+  which_ = &model;
+  input_.become(model.samples);
+  decoder_.become(model);
   decoder_.forget();
   decoder_.follow(baud);
-  storage_.resize(largest_scan(which));
-  assembler_ = scan_assembler(storage_.all(), which);
-  begin(first_rate_hz(which));
+  storage_.resize(largest_scan(model));
+  assembler_ = scan_assembler(storage_.all(), model);
+  begin(first_rate_hz(model));
 }
 
 void point_pipeline::identified(const device_information& who) noexcept {

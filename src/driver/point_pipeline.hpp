@@ -65,8 +65,8 @@ class lazy_ring {
   };
 
   /// For the points of at least 1.8 s at the highest sample rate of the model.
-  explicit lazy_ring(const model& which)
-      : size_(std::bit_ceil(std::max(least, std::size_t{highest_rate_hz(which)} * 9 / 5))),
+  explicit lazy_ring(const model& model)
+      : size_(std::bit_ceil(std::max(least, std::size_t{highest_rate_hz(model)} * 9 / 5))),
         memory_(::operator new(sizeof(ring_and_reader) + size_ * sizeof(lidar_ring::slot))) {
     static_assert(std::is_trivially_destructible_v<ring_and_reader> &&
                   std::is_trivially_destructible_v<lidar_ring::slot>);
@@ -109,14 +109,14 @@ class lazy_ring {
 /// So a scan is delivered before the following bytes are parsed, and nothing here calls back.
 class point_pipeline {
  public:
-  point_pipeline(std::int64_t transport_delay_ns, bool partial_scans, const model& which = g4_model)
-      : which_(&which),
+  point_pipeline(std::int64_t transport_delay_ns, bool partial_scans, const model& model = g4_model)
+      : which_(&model),
         partial_scans_(partial_scans),
-        input_(which.samples),
-        decoder_(transport_delay_ns, which),
-        ring_(which),
-        storage_(largest_scan(which)),
-        assembler_(storage_.all(), which) {}
+        input_(model.samples),
+        decoder_(transport_delay_ns, model),
+        ring_(model),
+        storage_(largest_scan(model)),
+        assembler_(storage_.all(), model) {}
 
   /// The bytes of one read at a time, and the place in them. Fed only if is_empty().
   [[nodiscard]] event_reader& input() noexcept { return input_; }
@@ -149,9 +149,9 @@ class point_pipeline {
   void sent(bytes command) noexcept { replies_.sent(command); }
   /// Packets are read as the firmware of this device sends them.
   void identified(const device_information& who) noexcept;
-  /// The bytes that follow are those of a lidar like `which`, whatever the size of its samples: a new stream of points
+  /// The bytes that follow are those of a lidar like `model`, whatever the size of its samples: a new stream of points
   /// begins with the usual sample rate. Only if is_empty(). *Allocates.*
-  void become(const model& which, std::uint32_t baud);
+  void become(const model& model, std::uint32_t baud);
   /// What is added to all angles.
   [[nodiscard]] zero_offset& zero() noexcept { return decoder_.zero(); }
 

@@ -148,8 +148,8 @@ result<std::unique_ptr<transport>> open_connection(std::string_view address,
     return std::make_unique<tcp_connection>(calls, std::move(fd), std::move(waits), std::move(name),
                                             options.baud);
   }
-  const problem what = is_our_own(refused) ? problem::system : problem::cannot_connect;
-  return failure(task::opening, what, name, refused);
+  const problem code = is_our_own(refused) ? problem::system : problem::cannot_connect;
+  return failure(task::opening, code, name, refused);
 }
 
 result<std::unique_ptr<transport>> tcp_port::open(std::string_view address,

@@ -176,8 +176,8 @@ inline constexpr auto models = [] {
 }
 
 /// "an" before the names that are spoken with a vowel, as X4 and SCL; else "a". *Pure.*
-[[nodiscard]] constexpr std::string_view article_of(const model& which) noexcept {
-  return std::string_view("FRSX").find(which.name.front()) != std::string_view::npos ? "an" : "a";
+[[nodiscard]] constexpr std::string_view article_of(const model& model) noexcept {
+  return std::string_view("FRSX").find(model.name.front()) != std::string_view::npos ? "an" : "a";
 }
 
 /// The model whose devices, and no other model's with a connection of this kind, identify themselves
@@ -288,36 +288,37 @@ inline constexpr auto old_models = [] {
   return is_it(row.ids[0]) || is_it(row.ids[1]);
 }
 
-/// Whether the packets of a device of the model `row` can be valid where `which` is read. *Pure.*
-[[nodiscard]] constexpr bool is_read_as(const model& row, const model& which) noexcept {
+/// Whether the packets of a device of the model `row` can be valid where `lidar_model` is read. *Pure.*
+[[nodiscard]] constexpr bool is_read_as(const model& row, const model& lidar_model) noexcept {
   const bool has_baud = std::any_of(row.bauds.begin(), row.bauds.end(), [&](std::uint32_t baud) {
-    return baud != 0 && (baud == which.bauds[0] || baud == which.bauds[1]);
+    return baud != 0 && (baud == lidar_model.bauds[0] || baud == lidar_model.bauds[1]);
   });
-  return has_baud && sample_size(row.samples.layout) == sample_size(which.samples.layout);
+  return has_baud && sample_size(row.samples.layout) == sample_size(lidar_model.samples.layout);
 }
 
 }  // namespace detail
 
-/// The model `which` of the table, as a device of it is that has reported `who`: with old firmware another
-/// record, of the same name. Valid forever; `which` itself if nothing differs. *Pure.*
+/// The model `lidar_model` of the table, as a device of it is that has reported `information`: with old firmware another
+/// record, of the same name. Valid forever; `lidar_model` itself if nothing differs. *Pure.*
 // NOLINTBEGIN(bugprone-return-const-ref-from-parameter): models are those of the table
-[[nodiscard]] constexpr const model& with_firmware(const model& which,
-                                                   const device_information& who) noexcept {
-  const unsigned version = who.firmware_major * 256U + who.firmware_minor;
-  if (!which.has_number(who.model) || version > which.old_firmware.last_version) return which;
+[[nodiscard]] constexpr const model& with_firmware(const model& lidar_model,
+                                                   const device_information& information) noexcept {
+  const unsigned version = information.firmware_major * 256U + information.firmware_minor;
+  if (!lidar_model.has_number(information.model) || version > lidar_model.old_firmware.last_version)
+    return lidar_model;
   for (const model& each : detail::old_models) {
-    if (each == which) return each;
+    if (each == lidar_model) return each;
   }
-  return which;
+  return lidar_model;
 }
 // NOLINTEND(bugprone-return-const-ref-from-parameter)
 
-/// The model to which a one-way lidar that identifies itself with `number` belongs instead of `which`; null
-/// if it may be `which`. Several models report 4 and 6, so these numbers contradict no one-way model. Valid
+/// The model to which a one-way lidar that identifies itself with `number` belongs instead of `lidar_model`; null
+/// if it may be `lidar_model`. Several models report 4 and 6, so these numbers contradict no one-way model. Valid
 /// forever. *Pure.*
-[[nodiscard]] constexpr const model* one_way_other_than(const model& which,
+[[nodiscard]] constexpr const model* one_way_other_than(const model& lidar_model,
                                                         std::uint8_t number) noexcept {
-  if (detail::may_report(which, number)) return nullptr;
+  if (detail::may_report(lidar_model, number)) return nullptr;
   const model* found = nullptr;
   for (const model& each : models) {
     if (each.link != link_kind::one_way || !detail::may_report(each, number)) continue;
@@ -326,7 +327,7 @@ inline constexpr auto old_models = [] {
   }
   if (found != nullptr) return found;
   for (const model& each : models) {
-    if (detail::may_report(each, number) && detail::is_read_as(each, which)) return &each;
+    if (detail::may_report(each, number) && detail::is_read_as(each, lidar_model)) return &each;
   }
   return nullptr;
 }

@@ -22,10 +22,10 @@ class zero_offset {
     user,
   };
   /// Uses it, if nobody more reliable knows another one.
-  constexpr void set(zero_angle known, stated_by how) noexcept {
-    if (how < how_) return;
+  constexpr void set(zero_angle known, stated_by authority) noexcept {
+    if (authority < how_) return;
     angle_ = known;
-    how_ = how;
+    how_ = authority;
   }
   /// Nothing as long as it is not known; then no angle is changed.
   [[nodiscard]] constexpr const std::optional<zero_angle>& angle() const noexcept { return angle_; }

@@ -22,8 +22,8 @@ namespace g4lidar {
 /// header the answer to command 93. *Single thread, allocates.*
 class G4LIDAR_API raw_copy {
  public:
-  /// Of a lidar like `which`, valid as long as this; `who`: what is known of it before the first bytes.
-  explicit raw_copy(const model& which, const device_information& who = {});
+  /// Of a lidar like `model`, valid as long as this; `information`: what is known of it before the first bytes.
+  explicit raw_copy(const model& model, const device_information& information = {});
 
   /// Whether the answers before a part matter for reading it, so that they must be passed, too.
   [[nodiscard]] bool needs_begin() const noexcept {

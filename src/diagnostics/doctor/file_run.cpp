@@ -29,8 +29,8 @@ bool is_stop(bytes sent) noexcept {
 
 class file_run {
  public:
-  file_run(stage_log& log, const model& which)
-      : log_(log), model_(which), splitter_(which.samples), stated_(which, true) {}
+  file_run(stage_log& log, const model& model)
+      : log_(log), model_(model), splitter_(model.samples), stated_(model, true) {}
 
   /// `wrong`: why it is not read.
   void run(const std::string& path, const std::optional<error>& wrong) {

@@ -10,12 +10,12 @@ namespace g4lidar {
 namespace {
 
 /// Whether the event happened when this much of the read had been processed.
-bool is_here(const recorded_event& what, const event_reader& input) noexcept {
-  switch (what.what) {
+bool is_here(const recorded_event& event, const event_reader& input) noexcept {
+  switch (event.what) {
     case recorded_event::kind::begun:
     case recorded_event::kind::held:
     case recorded_event::kind::cut:
-      return input.unparsed().size() <= what.unparsed && input.events_of_reading() >= what.events;
+      return input.unparsed().size() <= event.unparsed && input.events_of_reading() >= event.events;
     case recorded_event::kind::opened:
     case recorded_event::kind::closed:
     case recorded_event::kind::gap:
@@ -32,8 +32,8 @@ bool is_here(const recorded_event& what, const event_reader& input) noexcept {
 
 }  // namespace
 
-replay_player::replay_player(parts& of, const lidar_options& options)
-    : scan_source(of, options),
+replay_player::replay_player(parts& used, const lidar_options& options)
+    : scan_source(used, options),
       stated_{.identity = identity_reader(*options.model, true)},
       samples_{options.raw_sample_rate_hz.value_or(first_rate_hz(*options.model)),
                options.raw_sample_rate_hz.has_value(),
@@ -215,10 +215,10 @@ bool replay_player::parse_bytes() {
 }
 
 /// For a recording of raw bytes: how the points that follow are made.
-void replay_player::record(recorded_event::kind what, std::optional<zero_angle> zero) {
+void replay_player::record(recorded_event::kind kind, std::optional<zero_angle> zero) {
   stated_.recorded_zero = zero;
   if (stated_.recorder == nullptr) return;
-  stated_.recorder->event({.what = what,
+  stated_.recorder->event({.what = kind,
                            .baud = connection_.port().baud(),
                            .sample_rate_hz = samples_.rate_hz,
                            .time_ns = now_ns(),

@@ -16,12 +16,12 @@ namespace g4lidar {
 /// points result. In a file of bytes every packet produces points.
 class replay_player final : public scan_source {
  public:
-  replay_player(parts& of, const lidar_options& options);
+  replay_player(parts& used, const lidar_options& options);
 
   [[nodiscard]] result<void> open() override;
   [[nodiscard]] result<void> start() override;
   [[nodiscard]] result<void> stop() override;
-  [[nodiscard]] result<answer> ask(const request& wanted, while_scanning how) override;
+  [[nodiscard]] result<answer> ask(const request& wanted, while_scanning if_scanning) override;
   void release(bool rests) noexcept override;
 
   [[nodiscard]] result<void> can_read() const noexcept override;
@@ -70,8 +70,8 @@ class replay_player final : public scan_source {
     std::optional<zero_angle> recorded_zero{};  ///< By `recorder`.
     bool is_zero_judged = false;                ///< Whether it is known when points begin.
 
-    void follow(const model& which) noexcept {
-      identity = identity_reader(which, true);
+    void follow(const model& model) noexcept {
+      identity = identity_reader(model, true);
       is_zero_judged = false;
     }
   };
@@ -94,7 +94,7 @@ class replay_player final : public scan_source {
   void follow_seek();
   void follow_delivery();
   void report_long_pause();
-  void record(recorded_event::kind what, std::optional<zero_angle> zero);
+  void record(recorded_event::kind kind, std::optional<zero_angle> zero);
   [[nodiscard]] bool play_events(bool all);
   void play(const recorded_event& what);
 

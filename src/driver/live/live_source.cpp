@@ -18,8 +18,8 @@ bool may_answer(const lidar_options& options) noexcept {
 
 }  // namespace
 
-live_source::live_source(parts& of, const lidar_options& options)
-    : scan_source(of, options),
+live_source::live_source(parts& used, const lidar_options& options)
+    : scan_source(used, options),
       options_(options),
       stream_({connection_, pipeline_, receiver_, spin_up_, stage_, takes_points_}, options) {}
 

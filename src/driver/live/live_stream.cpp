@@ -152,16 +152,16 @@ result<void> live_stream::set_motor(bool on) {
   return {};
 }
 
-void live_stream::become(const model& which) {
+void live_stream::become(const model& model) {
   record(recorded_event::kind::cut);  // what is held of a packet is dropped
-  talk().reset(&which, true);
-  reported_ = identity_reader(which, link_.listens());
-  motor_ = which.motor;
-  sample_rate_hz_ = first_rate_hz(which);
-  parts_.receiver.become(which);
+  talk().reset(&model, true);
+  reported_ = identity_reader(model, link_.listens());
+  motor_ = model.motor;
+  sample_rate_hz_ = first_rate_hz(model);
+  parts_.receiver.become(model);
   parts_.receiver.reset(parts_.connection.port().baud(), parts_.connection.port().kept_bytes(),
                         now_ns());
-  parts_.pipeline.become(which, parts_.connection.port().baud());
+  parts_.pipeline.become(model, parts_.connection.port().baud());
   record(recorded_event::kind::begun);
 }
 

@@ -68,8 +68,8 @@ class live_stream {
   void follow_delivery();
   /// The motor is started, or was interrupted: the points that follow are a new stream.
   void begin_points();
-  /// The device is one like `which`, and goes on. Only if everything that was received is parsed.
-  void become(const model& which);
+  /// The device is one like `model`, and goes on. Only if everything that was received is parsed.
+  void become(const model& model);
   /// For a recording: what happens here.
   void record(recorded_event::kind what);
   /// Uses the sample rate, if it is the answer.

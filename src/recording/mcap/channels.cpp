@@ -41,8 +41,8 @@ struct schema_words {
 };
 constexpr std::uint16_t schema_count_of_all = 6;
 std::span<const schema_words> all_schemas() noexcept {
-  const auto words = [](std::uint16_t id, message_schema of) {
-    return schema_words{id, of.name, of.text};
+  const auto words = [](std::uint16_t id, message_schema schema) {
+    return schema_words{id, schema.name, schema.text};
   };
   static const std::array<schema_words, schema_count_of_all> schemas{{
       words(1, recorded_bytes_schema()),

@@ -68,7 +68,7 @@ class channel_set {
   void add(channel_id id) noexcept { is_in_[index_of(id)] = true; }
   /// The model of the lidar.
   [[nodiscard]] const g4lidar::model& model() const noexcept { return *model_; }
-  void set_model(const g4lidar::model& which) noexcept { model_ = &which; }
+  void set_model(const g4lidar::model& model) noexcept { model_ = &model; }
   [[nodiscard]] std::uint32_t count() const noexcept;
   [[nodiscard]] std::uint16_t schema_count() const noexcept;
 
@@ -92,8 +92,8 @@ class found_channels {
   [[nodiscard]] bool has(channel_id which) const noexcept {
     return ids_[index_of(which)].has_value();
   }
-  [[nodiscard]] bool is(channel_id which, std::uint16_t id) const noexcept {
-    return ids_[index_of(which)] == id;
+  [[nodiscard]] bool is(channel_id channel, std::uint16_t id) const noexcept {
+    return ids_[index_of(channel)] == id;
   }
   /// Whether readers return the messages of this channel.
   [[nodiscard]] bool reads(std::uint16_t id) const noexcept;

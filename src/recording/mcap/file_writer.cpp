@@ -84,11 +84,11 @@ void recording_writer::file_writer::put(channel_id id, std::int64_t time_ns, std
   }));
 }
 
-void recording_writer::file_writer::put_bytes(direction way, bytes data,
+void recording_writer::file_writer::put_bytes(direction flow, bytes data,
                                               std::int64_t time_ns) noexcept {
   if (is_closed_) return;
-  payload_.add(way, data);
-  const bool is_from_device = way == direction::from_device;
+  payload_.add(flow, data);
+  const bool is_from_device = flow == direction::from_device;
   (is_from_device ? counts_.bytes_from_device : counts_.bytes_to_device) += data.size();
   while (!data.empty()) {
     const bytes piece = data.first(std::min(data.size(), largest_piece));
@@ -97,7 +97,7 @@ void recording_writer::file_writer::put_bytes(direction way, bytes data,
     put(is_from_device ? channel_id::from_device : channel_id::to_device, time_ns, piece.size(),
         [&](mcap::record_text& out) {
           mcap::put_recorded_bytes(out, piece, time_ns);
-          covered_.add(way, piece);
+          covered_.add(flow, piece);
         });
   }
 }
@@ -111,8 +111,8 @@ void recording_writer::file_writer::event(const recorded_event& what) noexcept {
     return;
   }
   if (what.what == recorded_event::kind::begun) place().keep();
-  // Each chunk begins with a state, that before it.
-  if (what.what != recorded_event::kind::state) {
+  const bool is_state = what.what == recorded_event::kind::state;
+  if (!is_state) {  // each chunk begins with one, of the state before
     put(channel_id::events, what.time_ns, 0,
         [&](mcap::record_text& out) { mcap::put_event(out, what, wall_.ahead_ns()); });
   }
@@ -197,16 +197,16 @@ void recording_writer::file_writer::metadata(
   }));
 }
 
-result<void> recording_writer::file_writer::take_model(const model& which) {
+result<void> recording_writer::file_writer::take_model(const model& lidar_model) {
   const model& now = channels_.model();
-  if (is_closed_ || now == which) return {};
+  if (is_closed_ || now == lidar_model) return {};
   const bool has_begun = transport_.is_known || !chunk_.is_empty() || !file_->is_empty();
   if (options_.model != nullptr || has_begun) {
     return failure(task::opening, problem::bad_option,
-                   "model: " + std::string(which.word) + ", and the recording states " +
+                   "model: " + std::string(lidar_model.word) + ", and the recording states " +
                        std::string(now.word));
   }
-  channels_.set_model(which);
+  channels_.set_model(lidar_model);
   return file_->begin(channels_);
 }
 

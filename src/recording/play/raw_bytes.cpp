@@ -162,18 +162,18 @@ class pipe_connector final : public connector {
 /// The bytes of a file: their times are counted from samples.
 class counted_items final : public item_source {
  public:
-  /// Of the file behind `fd` from `at` on, whose first sample was measured at `wall_ns`.
-  counted_items(std::shared_ptr<const owned_fd> fd, off_t at, std::string name,
+  /// Of the file behind `fd` from `offset` on, whose first sample was measured at `wall_ns`.
+  counted_items(std::shared_ptr<const owned_fd> fd, off_t offset, std::string name,
                 std::uint32_t sample_rate_hz, std::int64_t wall_ns, std::int64_t to_ns,
-                std::function<bool()> is_cancelled, const g4lidar::model& which)
+                std::function<bool()> is_cancelled, const g4lidar::model& model)
       : fd_(std::move(fd)),
-        file_begin_(at),
+        file_begin_(offset),
         name_(std::move(name)),
         rate_hz_(sample_rate_hz),
         wall_ahead_ns_(wall_ns - file_begin_ns),
         to_ns_(detail::saturating_add(file_begin_ns, to_ns)),
         is_cancelled_(std::move(is_cancelled)),
-        model_(&which) {}
+        model_(&model) {}
 
   [[nodiscard]] std::uint32_t counted_hz() const noexcept override {
     return static_cast<std::uint32_t>(rate_hz_);
@@ -304,7 +304,7 @@ result<std::unique_ptr<connector>> open_raw_bytes(const std::string& name,
                                                   std::optional<std::uint32_t> sample_rate_hz,
                                                   const playback_options& options,
                                                   std::function<bool()> is_cancelled,
-                                                  const model* which) {
+                                                  const model* lidar_model) {
   if (const auto wrong = problem_with(options)) return tl::unexpected(*wrong);
   if (sample_rate_hz && (*sample_rate_hz < 1 || *sample_rate_hz > 1'000'000)) {
     return failure(task::configuring, problem::bad_option,
@@ -320,7 +320,8 @@ result<std::unique_ptr<connector>> open_raw_bytes(const std::string& name,
   std::string title = name == "-" ? "standard input" : name;
   if (!is_known || !S_ISREG(file.st_mode)) {
     auto port = std::make_unique<pipe_transport>(std::move(fd), std::move(title));
-    if (which != nullptr) return std::make_unique<pipe_connector>(std::move(port), about(*which));
+    if (lidar_model != nullptr)
+      return std::make_unique<pipe_connector>(std::move(port), about(*lidar_model));
     const auto found = port->recognise(is_cancelled);
     if (!found) return tl::unexpected(found.error());
     return std::make_unique<pipe_connector>(std::move(port), about(*found));
@@ -330,8 +331,8 @@ result<std::unique_ptr<connector>> open_raw_bytes(const std::string& name,
   const ssize_t begun =
       uninterrupted([&] { return ::pread(fd.get(), begin.data(), begin.size(), at); });
   if (begun > 0 && begins_recording(bytes(begin))) return a_recording(task::opening);
-  recognised_model found{which};
-  if (which == nullptr) {
+  recognised_model found{lidar_model};
+  if (lidar_model == nullptr) {
     const stream_survey seen = surveyed_at(fd, at);
     if (const auto why = refusal_of(seen, title)) return tl::unexpected(*why);
     found = model_of(seen);
@@ -344,9 +345,9 @@ result<std::unique_ptr<connector>> open_raw_bytes(const std::string& name,
                                       file.st_mtim.tv_sec * second_ns + file.st_mtim.tv_nsec,
                                       options.to_ns, std::move(is_cancelled), sent_by);
   if (auto moved = items->seek(options.from_ns); !moved) return tl::unexpected(moved.error());
-  return connect_to(std::make_shared<played_file>(std::move(items), title, options,
-                                                  which != nullptr ? about(*which) : about(found),
-                                                  std::move(waits)));
+  return connect_to(std::make_shared<played_file>(
+      std::move(items), title, options, lidar_model != nullptr ? about(*lidar_model) : about(found),
+      std::move(waits)));
 }
 
 }  // namespace g4lidar

@@ -112,10 +112,10 @@ class answer_queue {
   [[nodiscard]] bool begin_answer() noexcept { return !std::exchange(has_answered_, true); }
 
   /// An answer beyond the capacity is lost.
-  void add(const answer_bytes& what, std::int64_t due_ns) noexcept {
+  void add(const answer_bytes& answer, std::int64_t due_ns) noexcept {
     for (late_answer& place : answers_) {
       if (place.due_ns != forever_ns) continue;
-      place = {due_ns, what};
+      place = {due_ns, answer};
       next_ns_ = std::min(next_ns_, due_ns);
       return;
     }

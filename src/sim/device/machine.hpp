@@ -131,7 +131,7 @@ class G4LIDAR_HIDDEN device::machine {
   [[nodiscard]] bool obey_setting(command code) noexcept;
   void use_settings() noexcept;
   [[nodiscard]] bool obey_start() noexcept;
-  void answer(command to, const answer_bytes& what, std::int64_t later_ns = 0) noexcept;
+  void answer(command to, const answer_bytes& answer, std::int64_t later_ns = 0) noexcept;
 
   // Scanning.
   void begin_scan(bool at_full_speed = false) noexcept;

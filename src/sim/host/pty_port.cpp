@@ -82,11 +82,11 @@ void unpoint(const fs::path& link, const std::string& target) {
 class G4LIDAR_HIDDEN pty_port::state {
  public:
   /// At a link, without a link, or at a TCP address.
-  state(device of, const std::string& link) : simulated(std::move(of)), link_(link) {
+  state(device device, const std::string& link) : simulated(std::move(device)), link_(link) {
     simulated.host().ignore_dtr(0);
   }
-  state(device of, std::string address, std::uint16_t port)
-      : simulated(std::move(of)), address_(std::move(address)), port_(port) {
+  state(device device, std::string address, std::uint16_t port)
+      : simulated(std::move(device)), address_(std::move(address)), port_(port) {
     simulated.host().ignore_dtr(0);
   }
   ~state() { unplug(); }
