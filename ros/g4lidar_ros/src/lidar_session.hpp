@@ -70,7 +70,7 @@ class lidar_session final : private g4lidar::service_sink {
   void on_open(std::size_t lidar, g4lidar::lidar& device) override;
   void on_values(std::size_t lidar, const std::string& refused) override;
   void on_scan(const g4lidar::service_scan& made) override;
-  void on_event(std::size_t lidar, const g4lidar::lidar_event& what,
+  void on_event(std::size_t lidar, const g4lidar::lidar_event& event,
                 std::int64_t stamp_ns) override;
   void on_state(std::size_t lidar, g4lidar::reader_state state,
                 const std::optional<g4lidar::error>& why) override;

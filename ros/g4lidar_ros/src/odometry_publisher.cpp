@@ -109,22 +109,22 @@ void odometry_publisher::on_time(std::size_t /*lidar*/, std::int64_t stamp_ns) {
   });
 }
 
-void odometry_publisher::publish(const g4lidar::stamped_odometry& at, std::int64_t stamp_ns) {
+void odometry_publisher::publish(const g4lidar::stamped_odometry& odometry, std::int64_t stamp_ns) {
   if (topics_.odometry->is_wanted()) {
     auto made = std::make_unique<nav_msgs::msg::Odometry>();
     made->header.stamp = rclcpp::Time(stamp_ns);
     made->header.frame_id = options_.odometry_frame;
     made->child_frame_id = options_.base_frame;
-    made->pose.pose.position.x = at.pose.x_m;
-    made->pose.pose.position.y = at.pose.y_m;
-    set(made->pose.pose.orientation, {at.pose, false});
-    made->twist.twist.linear.x = at.twist.x_m_per_s;
-    made->twist.twist.linear.y = at.twist.y_m_per_s;
-    made->twist.twist.angular.z = at.twist.yaw_rad_per_s;
+    made->pose.pose.position.x = odometry.pose.x_m;
+    made->pose.pose.position.y = odometry.pose.y_m;
+    set(made->pose.pose.orientation, {odometry.pose, false});
+    made->twist.twist.linear.x = odometry.twist.x_m_per_s;
+    made->twist.twist.linear.y = odometry.twist.y_m_per_s;
+    made->twist.twist.angular.z = odometry.twist.yaw_rad_per_s;
     topics_.odometry->publish(std::move(made));
   }
   tf_->sendTransform(
-      transform_of(stamp_ns, options_.odometry_frame, options_.base_frame, {at.pose, false}));
+      transform_of(stamp_ns, options_.odometry_frame, options_.base_frame, {odometry.pose, false}));
 }
 
 void odometry_publisher::take(g4lidar::odometry_path& into, const g4lidar::scan& whole,

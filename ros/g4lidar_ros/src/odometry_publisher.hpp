@@ -48,7 +48,7 @@ class odometry_publisher final : public g4lidar::service_sink {
   void take(g4lidar::odometry_path& into, const g4lidar::scan& whole, std::int64_t ahead_ns);
 
  private:
-  void publish(const g4lidar::stamped_odometry& at, std::int64_t stamp_ns);
+  void publish(const g4lidar::stamped_odometry& odometry, std::int64_t stamp_ns);
   void subscribe();
   void take_subscribed(g4lidar::odometry_path& into, std::int64_t ahead_ns);
   void take_transforms(g4lidar::odometry_path& into, const g4lidar::scan& whole,

@@ -15,8 +15,8 @@
 
 namespace g4_tool {
 
-service_lidar service_lidar_of(const common_options& options, const lidar_options& how) {
-  return {.options = options_for(options, how), .mount = options.mount};
+service_lidar service_lidar_of(const common_options& options, const lidar_options& wanted) {
+  return {.options = options_for(options, wanted), .mount = options.mount};
 }
 
 service_options service_options_of(const common_options& options) {
