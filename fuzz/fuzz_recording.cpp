@@ -64,7 +64,7 @@ std::vector<std::uint8_t> made_recording() {
     open_chunk chunk;
     channel_set().put_channels(chunk.text());
     for (int k = 0; k < 3; ++k, ++number) {
-      chunk.begin_message(topic::from_device, sequence++, number);
+      chunk.begin_message(channel_id::from_device, sequence++, number);
       put_recorded_bytes(chunk.text(), reading(number), number);
       chunk.end_message();
     }

@@ -105,11 +105,11 @@ class G4LIDAR_API background_reader {
   /// lidar is closed, which may also take as long as lidar::close(). Errors: those of
   /// lidar::start(), and system.
   [[nodiscard]] static result<background_reader> start(lidar&& device,
-                                                       const reader_options& how = {});
+                                                       const reader_options& options = {});
 
   /// Opens nothing before start(). With a listener, which outlives this, next_scan() and next_event() give
   /// nothing. `options.wrap` and `options.is_cancelled` are called in the thread.
-  explicit background_reader(const lidar_options& options, const reader_options& how = {},
+  explicit background_reader(const lidar_options& options, const reader_options& reading = {},
                              reader_listener* listener = nullptr);
   /// Starts the thread of a reader that opens the lidar itself. A further call does nothing. Fails with system, and
   /// with gone after stop(): make another reader then.

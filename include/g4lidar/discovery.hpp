@@ -158,7 +158,7 @@ struct find_options {
 [[nodiscard]] G4LIDAR_API result<std::vector<found_lidar>> find_lidars(
     const find_options& options = {});
 
-/// The port that `which` names. Writes to ports only where stated:
+/// The port that `name` names. Writes to ports only where stated:
 /// - "/dev/...", or any path: that port; only its path is set;
 /// - "usb:1-1.4": the port at that USB port;
 /// - "serial:2021101000070073": the port at which the lidar with this number answers (writes);
@@ -169,7 +169,7 @@ struct find_options {
 /// "ttyUSB0", "COM3", "udp:HOST:PORT", "HOST:PORT"; the subject has the right one), no_port (the subject lists the
 /// ports that were not looked at), several_ports (the subject lists them), or system; for "serial:" also with permission or busy, if that prevented
 /// the query of a port and no other lidar has that number.
-[[nodiscard]] G4LIDAR_API result<port_info> select_port(std::string_view which,
+[[nodiscard]] G4LIDAR_API result<port_info> select_port(std::string_view name,
                                                         const find_options& options = {});
 
 }  // namespace g4lidar

@@ -52,11 +52,11 @@ struct grid_options {
   /// scan it is at most the longest range of its model by the manufacturer; 0: that one, without a scan a G4's.
   float longest_mm = 0.0F;
 
-  /// The same options for a lidar like `which`. *Pure.*
-  [[nodiscard]] constexpr grid_options with(const model& which) const noexcept {
+  /// The same options for a lidar like `model`. *Pure.*
+  [[nodiscard]] constexpr grid_options with(const model& model) const noexcept {
     grid_options made = *this;
-    made.turn_deg = which.turn_deg;
-    const auto most_mm = static_cast<float>(which.range.max_mm);
+    made.turn_deg = model.turn_deg;
+    const auto most_mm = static_cast<float>(model.range.max_mm);
     if (!(longest_mm > 0.0F && longest_mm < most_mm)) made.longest_mm = most_mm;
     return made;
   }
@@ -64,8 +64,8 @@ struct grid_options {
 
 /// A number of bins that leaves few of them empty: four fifths of the samples of a revolution at
 /// 10 Hz, 720 for a G4. *Pure.*
-[[nodiscard]] constexpr std::uint32_t default_bins(const model& which) noexcept {
-  return first_rate_hz(which) * 2 / 25;
+[[nodiscard]] constexpr std::uint32_t default_bins(const model& model) noexcept {
+  return first_rate_hz(model) * 2 / 25;
 }
 
 /// The bin that contains a direction (clockwise degrees in [0, 360), as in a point) in a grid of
@@ -84,6 +84,14 @@ struct grid_place {
   const std::size_t bin = detail::saturated<std::uint32_t>(from_first / width + 0.5F);
   const float off = from_first - static_cast<float>(bin) * width;
   return {bins == 0 ? 0 : bin % bins, off < 0.0F ? -off : off};
+}
+
+/// What a bin gets where nothing came back. *Pure.*
+[[nodiscard]] constexpr float no_return_m(const grid_options& options) noexcept {
+  using limits = std::numeric_limits<float>;
+  const float longest_mm = options.longest_mm > 0.0F ? options.longest_mm : g4_model.range.max_mm;
+  if (options.no_return == no_return_as::nan) return limits::quiet_NaN();
+  return options.no_return == no_return_as::max ? longest_mm * 0.001F : limits::infinity();
 }
 
 /// Like fill_grid() below, of the points for which `takes(point, bin)` is true. `intensities` is empty,
@@ -129,15 +137,10 @@ constexpr void fill_grid(std::span<const point> points, std::span<float> ranges_
   }
   constexpr float nan = std::numeric_limits<float>::quiet_NaN();
   constexpr float infinity = std::numeric_limits<float>::infinity();
-  const float longest_mm = options.longest_mm > 0.0F ? options.longest_mm : g4_model.range.max_mm;
-  const auto of_no_return = [&] {
-    if (options.no_return == no_return_as::nan) return nan;
-    return options.no_return == no_return_as::max ? longest_mm * 0.001F : infinity;
-  }();
   const auto value_of = [&](const point& p) {
     switch (worth(p)) {
       case no_return:
-        return of_no_return;
+        return no_return_m(options);
       case perhaps_near:
         return options.near_is_minus_infinity ? -infinity : nan;
       case unusable:

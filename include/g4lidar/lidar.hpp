@@ -66,7 +66,7 @@ class G4LIDAR_API lidar {
   [[nodiscard]] static result<lidar> open(std::string_view device,
                                           const lidar_options& options = {});
   /// The same through another connector: a simulation, a test.
-  [[nodiscard]] static result<lidar> open(std::unique_ptr<connector> from,
+  [[nodiscard]] static result<lidar> open(std::unique_ptr<connector> connector,
                                           const lidar_options& options = {});
 
   lidar(lidar&&) noexcept;
@@ -137,8 +137,8 @@ class G4LIDAR_API lidar {
   /// garbage, gone, ...
   template <class Answer>
   [[nodiscard]] result<Answer> ask(const request_for<Answer>& wanted,
-                                   while_scanning how = while_scanning::refuse) {
-    const auto given = ask(static_cast<const request&>(wanted), how);
+                                   while_scanning if_scanning = while_scanning::refuse) {
+    const auto given = ask(static_cast<const request&>(wanted), if_scanning);
     if (!given) return tl::unexpected(given.error());
     if constexpr (std::is_void_v<Answer>) {
       return {};
@@ -149,13 +149,14 @@ class G4LIDAR_API lidar {
   }
   /// The same for a request that is chosen at run time.
   [[nodiscard]] result<answer> ask(const request& wanted,
-                                   while_scanning how = while_scanning::refuse);
+                                   while_scanning if_scanning = while_scanning::refuse);
   /// Sets one setting: `lidar.set(scan_frequency::hz(10))` returns the value that the device
   /// reports afterwards. The same as ask(requests::set(wanted)), and blocks at most as long.
   template <class Setting>
     requires requires(Setting wanted) { requests::set(wanted); }
-  [[nodiscard]] result<Setting> set(Setting wanted, while_scanning how = while_scanning::refuse) {
-    return ask(requests::set(wanted), how);
+  [[nodiscard]] result<Setting> set(Setting wanted,
+                                    while_scanning if_scanning = while_scanning::refuse) {
+    return ask(requests::set(wanted), if_scanning);
   }
 
   /// What the device reported about itself when it was opened; what a one-way lidar has sent so far, which
@@ -264,7 +265,8 @@ class scan_range {
 
  private:
   friend class lidar;
-  scan_range(lidar& from, lidar::milliseconds timeout) noexcept : from_(&from), timeout_(timeout) {}
+  scan_range(lidar& source, lidar::milliseconds timeout) noexcept
+      : from_(&source), timeout_(timeout) {}
   void advance() { current_ = from_->wait_scan(timeout_); }
 
   lidar* from_;

@@ -115,8 +115,8 @@ class G4LIDAR_API scan_shaper {
                                      std::span<point>) noexcept;
   [[nodiscard]] bool deskews() const noexcept;
   [[nodiscard]] std::size_t count_outside() const noexcept;
-  [[nodiscard]] std::span<const point> points_of(product& what, filtering* filtered);
-  [[nodiscard]] scan make(product& what, filtering* filtered);
+  [[nodiscard]] std::span<const point> points_of(product& wanted, filtering* filtered);
+  [[nodiscard]] scan make(product& wanted, filtering* filtered);
 
   shaping_options options_;
   std::vector<sector> sectors_;  // of the filter, as the next ones

@@ -50,8 +50,8 @@ buffer::buffer(nb::handle object, bool writable) {
 
 nb::handle dtype_of(element what) { return numpy->dtypes[static_cast<std::size_t>(what)]; }
 
-nb::object contiguous(nb::handle given, element what) {
-  const nb::handle wanted = dtype_of(what);
+nb::object contiguous(nb::handle given, element type) {
+  const nb::handle wanted = dtype_of(type);
   const nb::object found = given.attr("dtype");
   if (!found.is(wanted) && !found.equal(wanted)) {
     const std::string text = "an array with the dtype " + std::string(nb::str(wanted).c_str()) +
@@ -60,13 +60,13 @@ nb::object contiguous(nb::handle given, element what) {
   }
   nb::object made = numpy->contiguous(given);
   const auto address = reinterpret_cast<std::uintptr_t>(buffer(made).read().data());
-  const std::size_t alignment = what == element::single ? alignof(float) : alignof(point);
+  const std::size_t alignment = type == element::single ? alignof(float) : alignof(point);
   return address % alignment == 0 ? made : made.attr("copy")();
 }
 
-nb::object new_array(element what, std::size_t count, std::size_t columns) {
-  if (columns > 0) return numpy->empty(nb::make_tuple(count, columns), dtype_of(what));
-  return numpy->empty(count, dtype_of(what));
+nb::object new_array(element type, std::size_t count, std::size_t columns) {
+  if (columns > 0) return numpy->empty(nb::make_tuple(count, columns), dtype_of(type));
+  return numpy->empty(count, dtype_of(type));
 }
 
 void bind_arrays(nb::module_& module) {

@@ -72,9 +72,9 @@ struct array {
 /// The dtype. Made by bind_arrays().
 [[nodiscard]] nb::handle dtype_of(element what);
 /// `given`, or a copy, as a contiguous array with aligned elements; raises TypeError if its elements are others.
-[[nodiscard]] nb::object contiguous(nb::handle given, element what);
+[[nodiscard]] nb::object contiguous(nb::handle given, element type);
 /// A new array with room for `count` elements, or rows of `columns`.
-[[nodiscard]] nb::object new_array(element what, std::size_t count, std::size_t columns = 0);
+[[nodiscard]] nb::object new_array(element type, std::size_t count, std::size_t columns = 0);
 
 /// The elements of an argument; valid as long as this.
 template <class Element>
@@ -131,9 +131,9 @@ struct type_caster<g4lidar::python::array<Element>> {
           const_name("numpy.typing.NDArray[numpy.float32]"),
           const_name("numpy.typing.NDArray[numpy.void]")))
 
-  bool from_python(handle from, std::uint8_t, cleanup_list*) noexcept {
-    if (!hasattr(from, "dtype")) return false;
-    value.object = borrow(from);
+  bool from_python(handle given, std::uint8_t, cleanup_list*) noexcept {
+    if (!hasattr(given, "dtype")) return false;
+    value.object = borrow(given);
     return true;
   }
   static handle from_cpp(const g4lidar::python::array<Element>& from, rv_policy,

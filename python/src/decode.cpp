@@ -11,8 +11,8 @@
 #include "errors.hpp"
 #include "g4lidar/recording/bulk_decoder.hpp"
 #include "gil.hpp"
-#include "scan.hpp"
-#include "settings.hpp"
+#include "kept_scan.hpp"
+#include "setting_keywords.hpp"
 
 namespace g4lidar::python {
 
@@ -27,7 +27,7 @@ bulk_decoder decoder_for(const std::optional<std::string>& model,
   const g4lidar::model& which = model_or_g4(model);
   bulk_decoder made(which);
   if (zero_angle)
-    made.zero().set(zero_angle_from(*zero_angle, &which), zero_offset::known_by::user);
+    made.zero().set(zero_angle_from(*zero_angle, &which), zero_offset::stated_by::user);
   return made;
 }
 

@@ -15,11 +15,11 @@
 #include <variant>
 #include <vector>
 
+#include "enumeration_words.hpp"
 #include "errors.hpp"
 #include "g4lidar/diagnostics/diagnosis.hpp"
 #include "gil.hpp"
 #include "simulator.hpp"
-#include "words.hpp"
 
 namespace g4lidar::python {
 
@@ -35,6 +35,29 @@ struct explained {
   diagnosis_info info;
 };
 
+/// What a run calls in Python. An exception of a signal handler or of on_stage ends the run.
+struct calls_into_python {
+  std::optional<nb::python_error> raised{};
+  /// Held during the run in virtual time, but not by code in Python, which may use the Simulator.
+  std::unique_lock<std::timed_mutex> lock{};
+
+  /// Nothing after an exception.
+  void call(const auto& function) {
+    if (raised) return;
+    const bool is_held = lock.owns_lock();
+    if (is_held) lock.unlock();
+    {
+      const with_gil held;
+      try {
+        function();
+      } catch (nb::python_error& error) {
+        raised.emplace(std::move(error));
+      }
+    }
+    if (is_held) lock.lock();
+  }
+};
+
 std::vector<stage_report> examine(const std::variant<path_text, simulator*>& device,
                                   double measuring_time, std::uint32_t baud,
                                   const std::optional<std::string>& model, bool listen_only,
@@ -47,54 +70,31 @@ std::vector<stage_report> examine(const std::variant<path_text, simulator*>& dev
   how.listen_only = listen_only;
   how.directions.in = frame::robot;  // as in filters
   how.measuring_time = std::chrono::nanoseconds(static_cast<std::int64_t>(measuring_time * 1e9));
-  // An exception of a signal handler or of on_stage ends the run.
-  std::optional<nb::python_error> raised;
-  // Held during the run in virtual time, but not by code in Python, which may use the Simulator.
-  std::unique_lock<std::timed_mutex> lock;
-  const auto call = [&](const auto& python) {
-    const bool is_held = lock.owns_lock();
-    if (is_held) lock.unlock();
-    {
-      const with_gil held;
-      python();
-    }
-    if (is_held) lock.lock();
-  };
+  calls_into_python calls;
   how.is_cancelled = [&] {
-    if (raised) return true;
-    call([&] {
-      if (PyErr_CheckSignals() != 0) raised.emplace();
+    calls.call([] {
+      if (PyErr_CheckSignals() != 0) throw nb::python_error();
     });
-    return raised.has_value();
+    return calls.raised.has_value();
   };
-  if (on_stage) {
-    how.on_stage = [&](const stage_report& report) {
-      if (raised) return;
-      call([&] {
-        try {
-          in_python([&] { (*on_stage)(report); });
-        } catch (nb::python_error& error) {
-          raised.emplace(std::move(error));
-        }
-      });
-    };
-  }
+  if (on_stage)
+    how.on_stage = [&](const stage_report& report) { calls.call([&] { in_python([&] { (*on_stage)(report); }); }); };
   std::vector<stage_report> found;
   const auto* given = std::get_if<simulator*>(&device);
   if (given != nullptr && (*given)->is_virtual()) {
     const auto alive = (*given)->in_virtual_time();
     const auto mutex = (*given)->mutex();
-    lock = lock_of(*mutex);
+    calls.lock = lock_of(*mutex);
     const without_gil free;
     sim::virtual_connector from(alive->device, alive->clock);
     found = diagnose(from, how);
-    lock.unlock();
+    calls.lock.unlock();
   } else {
     const std::string name = given != nullptr ? (*given)->path() : std::get<path_text>(device).text;
     const without_gil free;
     found = diagnose(name, how);
   }
-  if (raised) throw std::move(*raised);
+  if (calls.raised) throw std::move(*calls.raised);
   return found;
 }
 

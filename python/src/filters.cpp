@@ -13,13 +13,13 @@
 #include <utility>
 #include <vector>
 
+#include "enumeration_words.hpp"
 #include "errors.hpp"
 #include "g4lidar/filter/outliers.hpp"
 #include "g4lidar/filter/plausibility.hpp"
 #include "g4lidar/options/filter_text.hpp"
 #include "g4lidar/scan_shaper.hpp"
-#include "scan.hpp"
-#include "words.hpp"
+#include "kept_scan.hpp"
 
 namespace g4lidar::python {
 namespace {

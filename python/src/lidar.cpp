@@ -14,7 +14,7 @@
 #include "context.hpp"
 #include "gil.hpp"
 #include "reading_thread.hpp"
-#include "settings.hpp"
+#include "setting_keywords.hpp"
 
 namespace g4lidar::python {
 namespace {
@@ -42,14 +42,14 @@ nb::dict counts(live_lidar& on) {
   return all;
 }
 
-array<point> next_points(live_lidar& on, double timeout) {
+array<point> next_points(live_lidar& live, double timeout) {
   const auto wait = in_milliseconds(timeout);
   const auto copy = [&](lidar& device) -> result<std::vector<point>> {
     const auto found = device.next_points(wait);
     if (!found) return tl::unexpected(found.error());
     return std::vector(found->begin(), found->end());
   };
-  return on.run(copy, [](const std::vector<point>& found) {
+  return live.run(copy, [](const std::vector<point>& found) {
     return array_of(std::span<const point>(found));
   });
 }
@@ -111,9 +111,9 @@ template <class Class, class... Wanted, std::size_t... Index>
 void bind_control(Class& made, keyword_types<Wanted...>, std::index_sequence<Index...>) {
   made.def(
           "start",
-          [](live_lidar& on, const Wanted&... wanted) {
-            set(on, values_of(wanted...), true);
-            on.start();
+          [](live_lidar& lidar, const Wanted&... wanted) {
+            set(lidar, values_of(wanted...), true);
+            lidar.start();
           },
           nb::kw_only(), keyword(Index)...,
           "Sets what is given, as set() does, and starts the scan. Returns when the device has "
@@ -121,8 +121,8 @@ void bind_control(Class& made, keyword_types<Wanted...>, std::index_sequence<Ind
           "10 s with one fault of the device, 15 s for each request if many bytes are damaged.")
       .def(
           "set",
-          [](live_lidar& on, const Wanted&... wanted, bool interrupt) {
-            set(on, values_of(wanted...), interrupt);
+          [](live_lidar& lidar, const Wanted&... wanted, bool interrupt) {
+            set(lidar, values_of(wanted...), interrupt);
           },
           nb::kw_only(), keyword(Index)..., "interrupt"_a = false,
           "Sets the scan frequency (of a G4 5 to 12 Hz), the measurements per second (of a G4 "
@@ -141,10 +141,10 @@ void bind_control(Class& made, keyword_types<Wanted...>, std::index_sequence<Ind
           "its sample rate.")
       .def(
           "health",
-          [](live_lidar& on, bool interrupt) {
+          [](live_lidar& live, bool interrupt) {
             const auto how = interrupt ? while_scanning::stop_and_resume : while_scanning::refuse;
             const health found =
-                on.run([&](lidar& device) { return device.ask(requests::health(), how); });
+                live.run([&](lidar& device) { return device.ask(requests::health(), how); });
             return std::tuple(name_of(found.status), found.error_code);
           },
           nb::kw_only(), "interrupt"_a = false,
@@ -168,7 +168,9 @@ template <class Class>
 void bind_reading(Class& made) {
   made.def(
           "next_scan",
-          [](live_lidar& on, double timeout) { return on.next_scan(in_milliseconds(timeout)); },
+          [](live_lidar& lidar, double timeout) {
+            return lidar.next_scan(in_milliseconds(timeout));
+          },
           "timeout"_a = 2.0, nb::sig("def next_scan(self, timeout: float = 2.0) -> Scan"),
           "The next revolution. Waits at most `timeout` seconds, without the GIL. Raises Timeout "
           "(try again), NotScanning, "

@@ -35,8 +35,8 @@ live_lidar::milliseconds in_milliseconds(double seconds) {
       static_cast<std::int64_t>(std::min(seconds * 1e3, static_cast<double>(a_year.count()))));
 }
 
-live_lidar::live_lidar(lidar&& opened, foundation on)
-    : on_(std::move(on)),
+live_lidar::live_lidar(lidar&& opened, foundation base)
+    : on_(std::move(base)),
       lidar_(std::make_unique<lidar>(std::move(opened))),
       has_player_(lidar_->player() != nullptr) {
   if (!on_.mutex) on_.mutex = std::make_shared<std::timed_mutex>();

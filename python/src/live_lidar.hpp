@@ -20,9 +20,9 @@
 #include "g4lidar/point.hpp"
 #include "g4lidar/recording/writer.hpp"
 #include "interruption.hpp"
-#include "notice.hpp"
+#include "kept_scan.hpp"
 #include "process.hpp"
-#include "scan.hpp"
+#include "readable_notice.hpp"
 
 namespace g4lidar::python {
 
@@ -38,8 +38,8 @@ struct foundation {
 
 /// A scan, whose points are not those of the lidar.
 struct copied_scan {
-  copied_scan(const scan& from, std::int64_t ahead_ns)
-      : about(from), points(from.points.begin(), from.points.end()), wall_ahead_ns(ahead_ns) {}
+  copied_scan(const scan& scan, std::int64_t ahead_ns)
+      : about(scan), points(scan.points.begin(), scan.points.end()), wall_ahead_ns(ahead_ns) {}
   /// The object of Python. Needs the GIL.
   [[nodiscard]] nb::object kept() {
     about.points = points;
@@ -58,7 +58,7 @@ class live_lidar {
  public:
   using milliseconds = lidar::milliseconds;
 
-  live_lidar(lidar&& opened, foundation on);
+  live_lidar(lidar&& opened, foundation base);
   live_lidar(const live_lidar&) = delete;
   live_lidar& operator=(const live_lidar&) = delete;
   ~live_lidar();
@@ -133,7 +133,7 @@ class live_lidar {
   std::unique_ptr<lidar> lidar_;
   bool has_player_;
   process process_;
-  notice notice_;
+  readable_notice notice_;
   std::atomic<bool> woken_{false};  // by wake(), not by a signal
   std::atomic<bool> closed_{false};
   bool may_stop_ = false;  // started, and neither stopped nor lost
@@ -192,6 +192,6 @@ auto live_lidar::with_player(const Call& call) {
 
 void bind_lidar(nb::module_& module);
 void bind_opening(nb::module_& module);
-void bind_player(nb::module_& module, nb::class_<live_lidar>& of);
+void bind_player(nb::module_& module, nb::class_<live_lidar>& bound);
 
 }  // namespace g4lidar::python

@@ -27,7 +27,7 @@
 #include "g4lidar/transport/transport.hpp"
 #include "interruption.hpp"
 #include "live_lidar.hpp"
-#include "settings.hpp"
+#include "setting_keywords.hpp"
 #include "simulator.hpp"
 
 namespace g4lidar::python {
@@ -50,19 +50,19 @@ std::unique_ptr<connector> open_file(lidar_options options) {
 /// What needs no time to open: a file, or a simulation in virtual time. Null for all else, which
 /// `options.device` names then.
 std::unique_ptr<connector> connect(const device_name& device, lidar_options& options,
-                                   foundation& on) {
+                                   foundation& base) {
   if (const auto* given = std::get_if<simulator*>(&device)) {
     simulator& simulated = **given;
     if (options.model == nullptr) options.model = simulated.simulated();
     if (simulated.is_virtual()) {
       const auto& alive = simulated.in_virtual_time();
-      on.simulation = alive;
-      on.mutex = simulated.mutex();
-      on.is_virtual = true;
+      base.simulation = alive;
+      base.mutex = simulated.mutex();
+      base.is_virtual = true;
       return std::make_unique<sim::virtual_connector>(alive->device, alive->clock);
     }
     options.device = simulated.path();
-    on.simulation = simulated.in_real_time();
+    base.simulation = simulated.in_real_time();
     return nullptr;
   }
   options.device = std::get<path_text>(device).text;

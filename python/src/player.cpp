@@ -25,16 +25,16 @@ struct lidar_player {
   }
 };
 
-void pause(const lidar_player& on, bool pauses) {
-  on.call([pauses](player& of) -> result<void> {
+void pause(const lidar_player& played, bool pauses) {
+  played.call([pauses](player& of) -> result<void> {
     of.pause(pauses);
     return {};
   });
 }
 
-void seek(const lidar_player& on, double seconds) {
+void seek(const lidar_player& played, double seconds) {
   const std::int64_t position_ns = in_ns(seconds);
-  on.call([position_ns](player& of) { return of.seek(position_ns); });
+  played.call([position_ns](player& of) { return of.seek(position_ns); });
 }
 
 bool is_paused(const lidar_player& on) {
@@ -43,7 +43,7 @@ bool is_paused(const lidar_player& on) {
 
 }  // namespace
 
-void bind_player(nb::module_& module, nb::class_<live_lidar>& of) {
+void bind_player(nb::module_& module, nb::class_<live_lidar>& bound) {
   nb::class_<lidar_player>(
       module, "Player",
       "Plays the file of a lidar: Lidar.player. Any thread. After Lidar.close() everything raises "
@@ -56,18 +56,18 @@ void bind_player(nb::module_& module, nb::class_<live_lidar>& of) {
       .def_prop_rw(
           "speed",
           [](const lidar_player& on) {
-            return on.call([](player& of) { return result<double>(of.speed()); });
+            return on.call([](player& bound) { return result<double>(bound.speed()); });
           },
-          [](const lidar_player& on, double speed) {
-            on.call([speed](player& of) { return of.set_speed(speed); });
+          [](const lidar_player& played, double speed) {
+            played.call([speed](player& bound) { return bound.set_speed(speed); });
           },
           "1: as fast as it was recorded; 0: as fast as it is read; at most 1000. Raises "
           "BadOption.")
       .def(
           "set_loop",
-          [](const lidar_player& on, bool loops) {
-            on.call([loops](player& of) -> result<void> {
-              of.set_loop(loops);
+          [](const lidar_player& played, bool loops) {
+            played.call([loops](player& bound) -> result<void> {
+              bound.set_loop(loops);
               return {};
             });
           },
@@ -80,20 +80,20 @@ void bind_player(nb::module_& module, nb::class_<live_lidar>& of) {
       .def_prop_ro(
           "position",
           [](const lidar_player& on) {
-            return on.call([](player& of) {
-              return result<double>(static_cast<double>(of.position_ns()) / ns_per_s);
+            return on.call([](player& bound) {
+              return result<double>(static_cast<double>(bound.position_ns()) / ns_per_s);
             });
           },
           "Seconds since the beginning of the file.")
       .def_prop_ro(
           "length",
           [](const lidar_player& on) {
-            return on.call([](player& of) {
-              return result<double>(static_cast<double>(of.length_ns()) / ns_per_s);
+            return on.call([](player& bound) {
+              return result<double>(static_cast<double>(bound.length_ns()) / ns_per_s);
             });
           },
           "From the first to the last byte, in seconds.");
-  of.def_prop_ro(
+  bound.def_prop_ro(
       "player",
       [](nb::object self) -> std::optional<lidar_player> {
         if (!nb::cast<live_lidar&>(self).has_player()) return std::nullopt;

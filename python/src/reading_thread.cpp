@@ -28,9 +28,9 @@ std::vector<reading_thread*>& all_threads() {
 
 }  // namespace
 
-reading_thread::reading_thread(background_reader&& started, foundation on,
+reading_thread::reading_thread(background_reader&& started, foundation base,
                                std::optional<std::int64_t> wall_ahead_ns)
-    : on_(std::move(on)),
+    : on_(std::move(base)),
       reader_(std::make_unique<background_reader>(std::move(started))),
       wall_ahead_ns_(wall_ahead_ns) {
   all_threads().push_back(this);
@@ -97,7 +97,7 @@ void reading_thread::stop_all() {
   }
 }
 
-void bind_background(nb::module_& module, nb::class_<live_lidar>& of) {
+void bind_background(nb::module_& module, nb::class_<live_lidar>& bound) {
   nb::class_<reading_thread> made(
       module, "BackgroundReader",
       "A lidar that a thread of the library reads: made by "
@@ -105,7 +105,9 @@ void bind_background(nb::module_& module, nb::class_<live_lidar>& of) {
       "waits without limit, and ends at the end of a file and after stop().");
   made.def(
           "next_scan",
-          [](reading_thread& on, double timeout) { return on.next_scan(in_milliseconds(timeout)); },
+          [](reading_thread& thread, double timeout) {
+            return thread.next_scan(in_milliseconds(timeout));
+          },
           "timeout"_a = 2.0, nb::sig("def next_scan(self, timeout: float = 2.0) -> Scan"),
           "The oldest scan that was not taken yet; the last four are kept, older ones are counted "
           "in "
@@ -129,24 +131,26 @@ void bind_background(nb::module_& module, nb::class_<live_lidar>& of) {
           },
           "As Lidar.events().")
       .def(
-          "rest", [](reading_thread& on, bool rests) { on.reader().rest(rests); }, "rests"_a = true,
+          "rest", [](reading_thread& thread, bool rests) { thread.reader().rest(rests); },
+          "rests"_a = true,
           "Whether the motor is to stand. A file, too, is not read while it rests.")
       .def(
-          "pause", [](reading_thread& on, bool pauses) { on.reader().pause(pauses); },
+          "pause", [](reading_thread& thread, bool pauses) { thread.reader().pause(pauses); },
           "pauses"_a = true, "Pauses the player of a file; a seek then gives one scan.")
       .def(
           "set_speed",
-          [](reading_thread& on, double speed) { check(on.reader().set_speed(speed)); }, "speed"_a,
-          "As Player.speed. Raises BadOption.")
+          [](reading_thread& thread, double speed) { check(thread.reader().set_speed(speed)); },
+          "speed"_a, "As Player.speed. Raises BadOption.")
       .def(
-          "seek", [](reading_thread& on, double seconds) { on.reader().seek(in_ns(seconds)); },
+          "seek",
+          [](reading_thread& thread, double seconds) { thread.reader().seek(in_ns(seconds)); },
           "seconds"_a, "Continues a file there, at most at one second before the end.")
       .def("stop", &reading_thread::stop,
            "Ends the thread and stops the motor. A second call does nothing.");
   bind_context(made, "def __enter__(self) -> BackgroundReader", &reading_thread::stop);
-  of.def(
-      "background", [](live_lidar& on, bool newest) { return on.hand_over(newest); }, nb::kw_only(),
-      "newest"_a = false,
+  bound.def(
+      "background", [](live_lidar& lidar, bool newest) { return lidar.hand_over(newest); },
+      nb::kw_only(), "newest"_a = false,
       nb::sig("def background(self, *, newest: bool = False) -> BackgroundReader"),
       "Starts the scan, if it was not started, and a thread of the library that reads it. The "
       "reader takes the lidar "

@@ -18,7 +18,7 @@ namespace g4lidar::python {
 class reading_thread {
  public:
   /// `wall_ahead_ns`: of a file.
-  reading_thread(background_reader&& started, foundation on,
+  reading_thread(background_reader&& started, foundation base,
                  std::optional<std::int64_t> wall_ahead_ns);
   reading_thread(const reading_thread&) = delete;
   reading_thread& operator=(const reading_thread&) = delete;
@@ -49,6 +49,6 @@ class reading_thread {
 };
 
 /// The class, and Lidar.background().
-void bind_background(nb::module_& module, nb::class_<live_lidar>& of);
+void bind_background(nb::module_& module, nb::class_<live_lidar>& bound);
 
 }  // namespace g4lidar::python

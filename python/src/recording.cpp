@@ -12,13 +12,13 @@
 #include <utility>
 
 #include "context.hpp"
+#include "enumeration_words.hpp"
 #include "errors.hpp"
 #include "g4lidar/recording/reader.hpp"
 #include "g4lidar/recording/writer.hpp"
 #include "interruption.hpp"
+#include "kept_scan.hpp"
 #include "process.hpp"
-#include "scan.hpp"
-#include "words.hpp"
 
 namespace g4lidar::python {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "scan.hpp"
+#include "kept_scan.hpp"
 
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
@@ -9,20 +9,20 @@
 #include <string>
 #include <vector>
 
+#include "enumeration_words.hpp"
 #include "errors.hpp"
 #include "g4lidar/message/ros_messages.hpp"
-#include "words.hpp"
 
 namespace g4lidar::python {
 
-kept_scan::kept_scan(const scan& from, std::int64_t wall_minus_monotonic_ns)
-    : about(from),
-      points(array_of(from.points)),
-      time_ns(from.time_ns()),
-      end_ns(from.end_ns()),
+kept_scan::kept_scan(const scan& scan, std::int64_t wall_minus_monotonic_ns)
+    : about(scan),
+      points(array_of(scan.points)),
+      time_ns(scan.time_ns()),
+      end_ns(scan.end_ns()),
       wall_ahead_ns(wall_minus_monotonic_ns),
-      measured_sample_rate_hz(from.measured_sample_rate_hz()),
-      measured_frequency_hz(from.measured_frequency_hz()) {
+      measured_sample_rate_hz(scan.measured_sample_rate_hz()),
+      measured_frequency_hz(scan.measured_frequency_hz()) {
   about.points = {};
 }
 
@@ -40,14 +40,14 @@ array<float> to_xy_array(const array<point>& points, frame to, std::uint16_t tur
   return made;
 }
 
-array<float> to_ranges(const array<point>& points, std::size_t bins, const grid_options& how,
+array<float> to_ranges(const array<point>& points, std::size_t bins, const grid_options& options,
                        std::span<float> intensities) {
   if (bins < 1 || bins > 65536) raise_impossible("a grid has 1 to 65536 ranges", bins);
   const elements<point> from(points);
   if (from.span().size() > (std::size_t{1} << 24))
     throw nb::value_error("more than 16777216 points");
   return make_array<float>(
-      bins, [&](std::span<float> out) { fill_grid(from.span(), out, how, intensities); });
+      bins, [&](std::span<float> out) { fill_grid(from.span(), out, options, intensities); });
 }
 
 namespace {
@@ -62,9 +62,9 @@ message_header header_of(const kept_scan& scan, const std::string& frame_id) {
 
 /// Turned, and with the number of ranges, of its model.
 array<float> ranges_of(const kept_scan& scan, std::optional<std::size_t> bins,
-                       const grid_options& how, std::span<float> intensities = {}) {
+                       const grid_options& options, std::span<float> intensities = {}) {
   const model& of = *scan.about.model;
-  return to_ranges(scan.points, bins.value_or(default_bins(of)), how.with(of), intensities);
+  return to_ranges(scan.points, bins.value_or(default_bins(of)), options.with(of), intensities);
 }
 
 nb::bytes laser_scan(const kept_scan& scan, std::optional<std::size_t> bins,

@@ -19,12 +19,12 @@
 #include <variant>
 #include <vector>
 
+#include "enumeration_words.hpp"
 #include "errors.hpp"
 #include "g4lidar/merge.hpp"
 #include "g4lidar/motion/deskew.hpp"
 #include "g4lidar/motion/twist_estimator.hpp"
-#include "scan.hpp"
-#include "words.hpp"
+#include "kept_scan.hpp"
 
 namespace g4lidar::python {
 namespace {
@@ -40,11 +40,11 @@ using merged_lidar =
 
 /// The turn of a lidar whose points do not state it: `turn_deg`, else that of the model. Raises ValueError if
 /// it is the turn of no model, or not that of the given one.
-std::uint16_t turn_of(const std::optional<unsigned>& turn_deg, const model& which, bool is_named) {
-  if (!turn_deg) return which.turn_deg;
+std::uint16_t turn_of(const std::optional<unsigned>& turn_deg, const model& model, bool is_named) {
+  if (!turn_deg) return model.turn_deg;
   if (*turn_deg != 0 && *turn_deg != 180) raise_impossible("turn_deg: 0 or 180", *turn_deg);
-  if (is_named && *turn_deg != which.turn_deg) {
-    raise_impossible("turn_deg of the model: " + std::to_string(which.turn_deg), *turn_deg);
+  if (is_named && *turn_deg != model.turn_deg) {
+    raise_impossible("turn_deg of the model: " + std::to_string(model.turn_deg), *turn_deg);
   }
   return static_cast<std::uint16_t>(*turn_deg);
 }
@@ -62,17 +62,17 @@ void require_finite(std::initializer_list<double> values) {
 
 /// `make(motion)` with the twist, or with the poses.
 template <class Make>
-auto with_motion(const motion& how, const Make& make) {
-  if (const auto* twist = std::get_if<twist_2d>(&how)) {
+auto with_motion(const motion& motion, const Make& make) {
+  if (const auto* twist = std::get_if<twist_2d>(&motion)) {
     require_finite({twist->x_m_per_s, twist->y_m_per_s, twist->yaw_rad_per_s});
     return make(*twist);
   }
-  const elements<stamped_pose> path(std::get<array<stamped_pose>>(how));
+  const elements<stamped_pose> path(std::get<array<stamped_pose>>(motion));
   require_path(path.span());
   return make(path.span());
 }
 
-std::tuple<array<point>, std::size_t> deskew_array(const array<point>& points, const motion& how,
+std::tuple<array<point>, std::size_t> deskew_array(const array<point>& points, const motion& motion,
                                                    std::int64_t reference_ns, const mounting& mount,
                                                    const std::optional<unsigned>& turn_deg,
                                                    const std::optional<std::string>& model) {
@@ -80,7 +80,7 @@ std::tuple<array<point>, std::size_t> deskew_array(const array<point>& points, c
   const elements<point> from(points);
   std::size_t outside = 0;
   auto made = make_array<point>(from.span().size(), [&](std::span<point> out) {
-    outside = with_motion(how, [&](const auto& moved) {
+    outside = with_motion(motion, [&](const auto& moved) {
       return deskew(from.span(), moved, reference_ns, out, mount, turn).outside;
     });
   });
@@ -88,7 +88,7 @@ std::tuple<array<point>, std::size_t> deskew_array(const array<point>& points, c
 }
 
 std::tuple<array<point>, std::size_t, std::vector<bool>> merge_arrays(
-    const std::vector<merged_lidar>& lidars, const motion& how, std::int64_t reference_ns,
+    const std::vector<merged_lidar>& lidars, const motion& motion, std::int64_t reference_ns,
     double fresh) {
   if (lidars.size() > 32) raise_impossible("at most 32 lidars", lidars.size());
   if (!(fresh >= 0.0 && fresh <= 3600.0)) raise_impossible("fresh: 0 to 3600 seconds", fresh);
@@ -113,7 +113,7 @@ std::tuple<array<point>, std::size_t, std::vector<bool>> merge_arrays(
   }
   merged result;
   auto made = make_array<point>(count, [&](std::span<point> out) {
-    result = with_motion(how, [&](const auto& moved) {
+    result = with_motion(motion, [&](const auto& moved) {
       return merge_scans(scans, moved, reference_ns, out, static_cast<std::int64_t>(fresh * 1e9));
     });
     return result.points.size();

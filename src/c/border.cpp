@@ -113,8 +113,8 @@ int bad_text(g4lidar_error* out, std::size_t line, std::string_view message,
   return G4LIDAR_BAD_FILE;
 }
 
-int bad_option(g4lidar_error* out, std::string_view which) noexcept {
-  return fail(out, error(task::configuring, problem::bad_option, which));
+int bad_option(g4lidar_error* out, std::string_view option) noexcept {
+  return fail(out, error(task::configuring, problem::bad_option, option));
 }
 
 bool take_model(const char* word, const model*& into) noexcept {

@@ -14,7 +14,7 @@
 #include "g4lidar/core/model.hpp"
 #include "g4lidar/error.hpp"
 #include "g4lidar/point.hpp"
-#include "options.hpp"
+#include "versioned_options.hpp"
 
 struct g4lidar_point;
 struct g4lidar_identity;
@@ -37,7 +37,7 @@ int refuse(g4lidar_error* out, std::string_view message) noexcept;
 int bad_text(g4lidar_error* out, std::size_t line, std::string_view message,
              std::string_view file = {});
 /// An option that has no valid value, in words of this interface.
-int bad_option(g4lidar_error* out, std::string_view which) noexcept;
+int bad_option(g4lidar_error* out, std::string_view option) noexcept;
 
 /// The result of `body`, an int or a result<void>, whatever it throws; none of `needed` is null.
 template <class Body, class... Pointers>

@@ -105,8 +105,8 @@ int g4lidar_list_ports(const g4lidar_find_options* options, g4lidar_ports** port
 int g4lidar_find_lidars(const g4lidar_find_options* options, g4lidar_ports** ports,
                         g4lidar_error* error) {
   return listed(options, ports, error,
-                [](const find_options& how, auto& found, auto& lidars) -> result<void> {
-                  auto all = find_lidars(how);
+                [](const find_options& given, auto& found, auto& lidars) -> result<void> {
+                  auto all = find_lidars(given);
                   if (!all) return tl::unexpected(all.error());
                   for (found_lidar& each : *all) {
                     found.push_back(std::move(each.port));
@@ -116,11 +116,11 @@ int g4lidar_find_lidars(const g4lidar_find_options* options, g4lidar_ports** por
                 });
 }
 
-int g4lidar_select_port(const char* which, const g4lidar_find_options* options,
+int g4lidar_select_port(const char* name, const g4lidar_find_options* options,
                         g4lidar_ports** ports, g4lidar_error* error) {
   return listed(options, ports, error,
-                [which](const find_options& how, auto& found, const auto&) -> result<void> {
-                  auto only = select_port(text_of(which), how);
+                [name](const find_options& given, auto& found, const auto&) -> result<void> {
+                  auto only = select_port(text_of(name), given);
                   if (!only) return tl::unexpected(only.error());
                   found.push_back(std::move(*only));
                   return {};

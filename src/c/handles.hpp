@@ -28,9 +28,9 @@ struct opening {
 
 [[nodiscard]] g4lidar_identity identity_of(const device_information& from) noexcept;
 [[nodiscard]] g4lidar_recording_info info_of(const recording_reader& from) noexcept;
-void fill(g4lidar_scan& out, const scan& from) noexcept;
-void fill(g4lidar_event& out, const lidar_event& from) noexcept;
-void fill(g4lidar_counts& out, const lidar_counts& from) noexcept;
+void fill(g4lidar_scan& out, const scan& scan) noexcept;
+void fill(g4lidar_event& out, const lidar_event& event) noexcept;
+void fill(g4lidar_counts& out, const lidar_counts& counts) noexcept;
 
 }  // namespace g4lidar::c
 

@@ -13,7 +13,7 @@
 #include "g4lidar/point.hpp"
 #include "g4lidar/scan_shaper.hpp"
 #include "g4lidar/version.hpp"  // a different version would be a macro that is defined twice
-#include "options.hpp"
+#include "versioned_options.hpp"
 
 namespace g4lidar {
 namespace {

@@ -67,16 +67,16 @@ std::optional<request> step_of(std::int32_t step_chz) noexcept {
 
 /// Sends a request; `take` gets the answer, and returns whether it is one of the request.
 template <class Take>
-int send(g4lidar_lidar* lidar, const std::optional<request>& wanted, int how, g4lidar_error* error,
-         Take take) noexcept {
+int send(g4lidar_lidar* lidar, const std::optional<request>& wanted, int if_scanning,
+         g4lidar_error* error, Take take) noexcept {
   return guarded(
       error,
       [&]() -> int {
         if (!wanted) return refuse(error, "there is no such request");
-        if (how != G4LIDAR_REFUSE && how != G4LIDAR_STOP_AND_RESUME) {
+        if (if_scanning != G4LIDAR_REFUSE && if_scanning != G4LIDAR_STOP_AND_RESUME) {
           return refuse(error, "how: a g4lidar_while_scanning");
         }
-        const auto given = lidar->made->ask(*wanted, static_cast<while_scanning>(how));
+        const auto given = lidar->made->ask(*wanted, static_cast<while_scanning>(if_scanning));
         if (!given) return fail(error, given.error());
         if (take(*given)) return succeed(error);
         return fail(error, g4lidar::error(task::asking, problem::wrong_answer));
@@ -84,9 +84,9 @@ int send(g4lidar_lidar* lidar, const std::optional<request>& wanted, int how, g4
       lidar);
 }
 
-int ask_value(g4lidar_lidar* lidar, const std::optional<request>& wanted, int how,
+int ask_value(g4lidar_lidar* lidar, const std::optional<request>& wanted, int if_scanning,
               std::int32_t* value, g4lidar_error* error) noexcept {
-  return send(lidar, wanted, how, error, [value](const answer& from) {
+  return send(lidar, wanted, if_scanning, error, [value](const answer& from) {
     const auto got = number_of(from);
     if (got && value != nullptr) *value = *got;
     return got.has_value();
@@ -114,60 +114,60 @@ int take_scan(g4lidar_lidar* lidar, scan_call call, int timeout_ms, const g4lida
 
 namespace g4lidar::c {
 
-void fill(g4lidar_scan& out, const scan& from) noexcept {
-  out.points = reinterpret_cast<const g4lidar_point*>(from.data());
-  out.point_count = from.size();
-  out.time_ns = from.time_ns();
-  out.end_ns = from.end_ns();
-  out.duration_ns = from.duration_ns;
-  out.revolution = from.revolution;
-  out.flags = static_cast<std::uint32_t>(from.flags);
-  out.suspect_packets = from.suspect_packets;
-  out.suspect_samples = from.suspect_samples;
-  out.sample_rate_hz = from.sample_rate_hz;
-  out.measured_sample_rate_hz = from.measured_sample_rate_hz();
-  out.frequency_hz = from.measured_frequency_hz();
-  out.reported_frequency_hz = static_cast<float>(from.reported_frequency_dhz) * 0.1F;
-  out.turned_deg = from.turned_deg;
-  out.is_whole = from.is_whole();
-  out.is_piece = from.is_piece();
-  out.turn_deg = from.model->turn_deg;
-  out.longest_range_mm = from.model->range.max_mm;
-  out.default_bins = default_bins(*from.model);
-  out.model = literal(from.model->word);
+void fill(g4lidar_scan& out, const scan& scan) noexcept {
+  out.points = reinterpret_cast<const g4lidar_point*>(scan.data());
+  out.point_count = scan.size();
+  out.time_ns = scan.time_ns();
+  out.end_ns = scan.end_ns();
+  out.duration_ns = scan.duration_ns;
+  out.revolution = scan.revolution;
+  out.flags = static_cast<std::uint32_t>(scan.flags);
+  out.suspect_packets = scan.suspect_packets;
+  out.suspect_samples = scan.suspect_samples;
+  out.sample_rate_hz = scan.sample_rate_hz;
+  out.measured_sample_rate_hz = scan.measured_sample_rate_hz();
+  out.frequency_hz = scan.measured_frequency_hz();
+  out.reported_frequency_hz = static_cast<float>(scan.reported_frequency_dhz) * 0.1F;
+  out.turned_deg = scan.turned_deg;
+  out.is_whole = scan.is_whole();
+  out.is_piece = scan.is_piece();
+  out.turn_deg = scan.model->turn_deg;
+  out.longest_range_mm = scan.model->range.max_mm;
+  out.default_bins = default_bins(*scan.model);
+  out.model = literal(scan.model->word);
 }
 
-void fill(g4lidar_event& out, const lidar_event& from) noexcept {
-  const bool is_lost = from.what == lidar_event::kind::lost;
-  out = {static_cast<std::int32_t>(from.what) + 1, is_lost ? result_of(from.reason) : 0,
-         from.time_ns};
+void fill(g4lidar_event& out, const lidar_event& event) noexcept {
+  const bool is_lost = event.what == lidar_event::kind::lost;
+  out = {static_cast<std::int32_t>(event.what) + 1, is_lost ? result_of(event.reason) : 0,
+         event.time_ns};
 }
 
-void fill(g4lidar_counts& out, const lidar_counts& from) noexcept {
-  const auto skipped = [&](skip_reason why) { return from.stream.skipped(why); };
-  out = {.bytes = from.bytes,
-         .held = from.held,
-         .parsed_bytes = from.stream.parsed_bytes,
+void fill(g4lidar_counts& out, const lidar_counts& counts) noexcept {
+  const auto skipped = [&](skip_reason why) { return counts.stream.skipped(why); };
+  out = {.bytes = counts.bytes,
+         .held = counts.held,
+         .parsed_bytes = counts.stream.parsed_bytes,
          .skipped_noise = skipped(skip_reason::noise),
          .skipped_bad_header = skipped(skip_reason::bad_header),
          .skipped_bad_checksum = skipped(skip_reason::bad_checksum),
          .skipped_truncated = skipped(skip_reason::truncated),
-         .packets = from.stream.packets,
-         .responses = from.stream.responses,
-         .points = from.stream.points,
-         .suspect_packets = from.stream.suspect,
-         .samples_lost = from.samples_lost,
-         .scans = from.scans,
-         .partial_scans = from.partial_scans,
-         .scans_missed = from.scans_missed,
-         .points_missed = from.points_missed,
-         .command_retries = from.command_retries,
-         .reconnects = from.reconnects,
-         .largest_gap_ns = from.largest_gap_ns,
-         .extras = {.time_packets = from.stream.time_packets,
-                    .crc_matches = from.stream.crc_matches,
-                    .crc_mismatches = from.stream.crc_mismatches,
-                    .empty_packets = from.stream.empty_packets}};
+         .packets = counts.stream.packets,
+         .responses = counts.stream.responses,
+         .points = counts.stream.points,
+         .suspect_packets = counts.stream.suspect,
+         .samples_lost = counts.samples_lost,
+         .scans = counts.scans,
+         .partial_scans = counts.partial_scans,
+         .scans_missed = counts.scans_missed,
+         .points_missed = counts.points_missed,
+         .command_retries = counts.command_retries,
+         .reconnects = counts.reconnects,
+         .largest_gap_ns = counts.largest_gap_ns,
+         .extras = {.time_packets = counts.stream.time_packets,
+                    .crc_matches = counts.stream.crc_matches,
+                    .crc_mismatches = counts.stream.crc_mismatches,
+                    .empty_packets = counts.stream.empty_packets}};
 }
 
 }  // namespace g4lidar::c
@@ -237,29 +237,30 @@ void g4lidar_wake(g4lidar_lidar* lidar) {
   if (lidar != nullptr) lidar->made->wake();
 }
 
-int g4lidar_get(g4lidar_lidar* lidar, int setting, int how, int32_t* value, g4lidar_error* error) {
-  if (value == nullptr) return refuse(error, "a required argument is NULL");
-  return ask_value(lidar, query_of(setting), how, value, error);
-}
-
-int g4lidar_set(g4lidar_lidar* lidar, int setting, int32_t wanted, int how, int32_t* reached,
+int g4lidar_get(g4lidar_lidar* lidar, int setting, int if_scanning, int32_t* value,
                 g4lidar_error* error) {
-  return ask_value(lidar, change_of(setting, wanted), how, reached, error);
+  if (value == nullptr) return refuse(error, "a required argument is NULL");
+  return ask_value(lidar, query_of(setting), if_scanning, value, error);
 }
 
-int g4lidar_step_frequency(g4lidar_lidar* lidar, int32_t step_chz, int how, int32_t* reached,
-                           g4lidar_error* error) {
-  return ask_value(lidar, step_of(step_chz), how, reached, error);
+int g4lidar_set(g4lidar_lidar* lidar, int setting, int32_t wanted, int if_scanning,
+                int32_t* reached, g4lidar_error* error) {
+  return ask_value(lidar, change_of(setting, wanted), if_scanning, reached, error);
 }
 
-int g4lidar_restart(g4lidar_lidar* lidar, int how, g4lidar_error* error) {
-  return send(lidar, requests::restart(), how, error, [](const answer&) { return true; });
+int g4lidar_step_frequency(g4lidar_lidar* lidar, int32_t step_chz, int if_scanning,
+                           int32_t* reached, g4lidar_error* error) {
+  return ask_value(lidar, step_of(step_chz), if_scanning, reached, error);
 }
 
-int g4lidar_get_health(g4lidar_lidar* lidar, int how, g4lidar_health* health,
+int g4lidar_restart(g4lidar_lidar* lidar, int if_scanning, g4lidar_error* error) {
+  return send(lidar, requests::restart(), if_scanning, error, [](const answer&) { return true; });
+}
+
+int g4lidar_get_health(g4lidar_lidar* lidar, int if_scanning, g4lidar_health* health,
                        g4lidar_error* error) {
   if (health == nullptr) return refuse(error, "a required argument is NULL");
-  return send(lidar, requests::health(), how, error, [health](const answer& from) {
+  return send(lidar, requests::health(), if_scanning, error, [health](const answer& from) {
     const auto* got = std::get_if<g4lidar::health>(&from);
     if (got != nullptr) *health = {static_cast<std::int32_t>(got->status), got->error_code};
     return got != nullptr;

@@ -7,7 +7,7 @@
 
 #include "border.hpp"
 #include "g4lidar/motion/twist_estimator.hpp"
-#include "motion.hpp"
+#include "motion_values.hpp"
 
 using namespace g4lidar;
 using namespace g4lidar::c;

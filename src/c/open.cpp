@@ -91,12 +91,12 @@ void describe(lidar& made, recording_writer& into) {
 }
 
 /// Of a recording, or of a simulation in virtual time: what no name opens.
-result<lidar> open_unnamed(const opening& wanted, const lidar_options& how) {
+result<lidar> open_unnamed(const opening& wanted, const lidar_options& options) {
   auto from = wanted.recording.empty()
                   ? wanted.simulated->connect()
-                  : replay::open(wanted.recording, how.playback, how.is_cancelled);
-  if (from) from = how.wrap(*std::move(from));
-  return from ? lidar::open(*std::move(from), how) : tl::unexpected(from.error());
+                  : replay::open(wanted.recording, options.playback, options.is_cancelled);
+  if (from) from = options.wrap(*std::move(from));
+  return from ? lidar::open(*std::move(from), options) : tl::unexpected(from.error());
 }
 
 /// Opens the lidar of a handle, the first time or again.

@@ -13,7 +13,7 @@
 #include "g4lidar/filter/too_near.hpp"
 #include "g4lidar/grid.hpp"
 #include "g4lidar/point.hpp"
-#include "options.hpp"
+#include "versioned_options.hpp"
 
 namespace g4lidar::c {
 

@@ -10,7 +10,7 @@
 #include "border.hpp"
 #include "g4lidar/recording/reader.hpp"
 #include "handles.hpp"
-#include "motion.hpp"
+#include "motion_values.hpp"
 #include "ranges.hpp"
 
 using namespace g4lidar;
@@ -78,15 +78,15 @@ recording_options options_of(const g4lidar_recorder_options& given) {
   return made;
 }
 
-void fill(g4lidar_item& out, const recorded_item& from, std::string& event_name) {
-  out.kind = static_cast<std::int32_t>(from.what) + 1;
-  out.time_ns = from.time_ns;
-  out.wall_ns = from.wall_ns;
-  out.data = from.data.data();
-  out.size = from.data.size();
-  event_name = from.what == recorded_item::kind::other ? name_of(from.other.what) : "";
+void fill(g4lidar_item& out, const recorded_item& item, std::string& event_name) {
+  out.kind = static_cast<std::int32_t>(item.what) + 1;
+  out.time_ns = item.time_ns;
+  out.wall_ns = item.wall_ns;
+  out.data = item.data.data();
+  out.size = item.data.size();
+  event_name = item.what == recorded_item::kind::other ? name_of(item.other.what) : "";
   out.event_name = event_name.c_str();
-  out.odometry = odometry_of(from.odometry);
+  out.odometry = odometry_of(item.odometry);
 }
 
 }  // namespace

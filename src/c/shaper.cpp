@@ -11,7 +11,7 @@
 #include "border.hpp"
 #include "g4lidar/options/filter_text.hpp"
 #include "g4lidar/scan_shaper.hpp"
-#include "motion.hpp"
+#include "motion_values.hpp"
 #include "ranges.hpp"
 
 using namespace g4lidar;

@@ -37,7 +37,7 @@ class simulation {
   [[nodiscard]] std::unique_ptr<connector> connect();
   /// The model that it simulates.
   [[nodiscard]] const model* simulated() const noexcept { return model_; }
-  void set_simulated(const model* which) noexcept { model_ = which; }
+  void set_simulated(const model* model) noexcept { model_ = model; }
 
   /// Calls `look` with the device and its time.
   template <class Look>

@@ -7,7 +7,7 @@
 
 #include "border.hpp"
 #include "g4lidar/sim/setup.hpp"
-#include "motion.hpp"
+#include "motion_values.hpp"
 #include "simulation.hpp"
 
 namespace g4lidar::c {

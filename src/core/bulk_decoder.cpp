@@ -56,15 +56,15 @@ const char* name_of(instruction_set set) noexcept {
 
 bulk_decoder::bulk_decoder(instruction_set wanted) noexcept : bulk_decoder(g4_model, wanted) {}
 
-bulk_decoder::bulk_decoder(const model& which, instruction_set wanted) noexcept
-    : parser_(which.samples),
-      named_(&which),
-      which_(&which),
+bulk_decoder::bulk_decoder(const model& model, instruction_set wanted) noexcept
+    : parser_(model.samples),
+      named_(&model),
+      which_(&model),
       set_(wanted == best_instruction_set() ? wanted : instruction_set::portable) {}
 
 void bulk_decoder::learn(const response_view& heard) noexcept {
   const auto stated = replies_.take(heard, *which_);
-  if (stated.zero) zero_.set(*stated.zero, zero_offset::known_by::device);
+  if (stated.zero) zero_.set(*stated.zero, zero_offset::stated_by::device);
   if (!stated.firmware) return;
   which_ = &with_firmware(*named_, *stated.firmware);
   parser_.set_layout(which_->samples.layout);
@@ -142,8 +142,8 @@ struct ended {
 /// The kernels for the packets of a model, also where a device information between them states old firmware.
 class kernel_choice {
  public:
-  kernel_choice(instruction_set set, const model& which) noexcept
-      : set_(set), format_(which.samples), usual_(&bulk::kernels_of(set, which.samples)) {}
+  kernel_choice(instruction_set set, const model& model) noexcept
+      : set_(set), format_(model.samples), usual_(&bulk::kernels_of(set, model.samples)) {}
 
   [[nodiscard]] const bulk::kernels& of(packet_view packet) const noexcept {
     if (packet.layout() == format_.layout) return *usual_;
@@ -170,8 +170,8 @@ void turn(std::span<xy_point> points, frame to, const zero_offset& zero) noexcep
   }
 }
 
-auto points_with(instruction_set set, const model& which, const zero_offset& zero) noexcept {
-  return [choice = kernel_choice(set, which), shortest_mm = which.range.min_mm, &zero](
+auto points_with(instruction_set set, const model& model, const zero_offset& zero) noexcept {
+  return [choice = kernel_choice(set, model), shortest_mm = model.range.min_mm, &zero](
              packet_view packet, std::uint32_t revolution,
              std::span<point, max_samples> out) noexcept {
     choice.of(packet).to_points(packet, revolution, shortest_mm, {}, out);
@@ -179,9 +179,9 @@ auto points_with(instruction_set set, const model& which, const zero_offset& zer
   };
 }
 
-auto places_with(instruction_set set, const model& which, const zero_offset& zero,
+auto places_with(instruction_set set, const model& model, const zero_offset& zero,
                  frame to) noexcept {
-  return [choice = kernel_choice(set, which), &zero, to, turn_deg = which.turn_deg](
+  return [choice = kernel_choice(set, model), &zero, to, turn_deg = model.turn_deg](
              packet_view packet, std::uint32_t /*revolution*/,
              std::span<xy_point, max_samples> out) noexcept {
     choice.of(packet).to_xy(packet, to, turn_deg, out);

@@ -255,12 +255,12 @@ G4LIDAR_KERNEL bool write_points(packet_view packet, std::uint32_t revolution,
   return !all.has_near();
 }
 
-struct direction {
+struct unit_vector {
   floats sine;
   floats cosine;
 };
 /// Of angles in half turns, within 1e-7.
-G4LIDAR_KERNEL direction direction_of(floats turned) {
+G4LIDAR_KERNEL unit_vector direction_of(floats turned) {
   // The sum is rounded, because numbers of this size have no bits behind the point. Its last bit is
   // set if the number of half turns is odd.
   constexpr float rounding = 0x1.8p23F;

@@ -215,10 +215,10 @@ static_assert(in_order());
 
 const words& words_of(problem what) noexcept { return detail::row_of(all_words, what); }
 
-detail_words words_of(problem what, error_detail detail) noexcept {
-  if (detail == error_detail::usual) return {words_of(what).cause, words_of(what).advice};
+detail_words words_of(problem code, error_detail detail) noexcept {
+  if (detail == error_detail::usual) return {words_of(code).cause, words_of(code).advice};
   detail_words found = detail::row_of(all_details, static_cast<std::size_t>(detail) - 1);
-  if (found.cause.empty()) found.cause = words_of(what).cause;
+  if (found.cause.empty()) found.cause = words_of(code).cause;
   return found;
 }
 

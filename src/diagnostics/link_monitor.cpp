@@ -89,19 +89,19 @@ void event_splitter::look_for_text(bytes raw) {
 }
 
 link_monitor::link_monitor(std::unique_ptr<transport> opened, std::function<bool()> is_cancelled,
-                           const model& which, bool is_mute)
+                           const model& model, bool is_mute)
     : transport_(std::move(opened)),
       is_cancelled_(std::move(is_cancelled)),
-      which_(&which),
+      which_(&model),
       is_mute_(is_mute),
-      splitter_(which.samples),
+      splitter_(model.samples),
       link_(splitter_.input(), transport_.get(), {.quiet_ns = quiet_ns, .drain_ns = stop_ns},
             usual_cut_off_ns) {}
 
 // A wait that is too long is not caused by the device: this program was suspended.
 void link_monitor::listen(const std::int64_t& until_ns, const observer& to) {
   const auto take = [&](const received& got, std::int64_t took_ns) {
-    reading what{got.count, got.arrival_ns};
+    timed_read what{got.count, got.arrival_ns};
     if (took_ns > longest_read_ns + host_pause_after_ns) {
       what.host_pause_ns = took_ns;
       ++host_pauses_;
@@ -215,11 +215,11 @@ void link_monitor::await(exchange& made, std::int64_t patience_ns) {
   made.is_disturbed |= boots() != boots_before || host_pauses_ != pauses_before;
 }
 
-void link_monitor::read_as(const model& which) {
+void link_monitor::read_as(const model& model) {
   sample_bytes_ = sample_bytes();
-  which_ = &which;
+  which_ = &model;
   boots_before_ += splitter_.boots();
-  splitter_ = event_splitter(which.samples);
+  splitter_ = event_splitter(model.samples);
   survey_.part();
   silence_ns_ = 0;
   read_ns_ = -1;

@@ -35,7 +35,7 @@ struct observed_event {
 };
 
 /// Bytes of one read.
-struct reading {
+struct timed_read {
   std::size_t count;
   std::int64_t arrival_ns;
   std::int64_t silence_ns = 0;     ///< Before them, while the program was waiting.
@@ -46,7 +46,7 @@ struct reading {
 /// Receives the observations. Either may be empty.
 struct observer {
   std::function<void(const observed_event&)> event{};
-  std::function<void(const reading&)> arrival{};
+  std::function<void(const timed_read&)> arrival{};
 };
 
 /// Splits bytes into events with their bytes, and detects boot texts. *Single thread.*
@@ -124,9 +124,9 @@ class link_monitor {
   /// Longer than the pauses within an answer.
   static constexpr std::int64_t usual_cut_off_ns = 60 * ms;
 
-  /// `which` sends the packets; valid as long as this. `is_mute`: not a byte is sent, whatever is called.
+  /// `model` sends the packets; valid as long as this. `is_mute`: not a byte is sent, whatever is called.
   link_monitor(std::unique_ptr<transport> opened, std::function<bool()> is_cancelled,
-               const model& which = g4_model, bool is_mute = false);
+               const model& model = g4_model, bool is_mute = false);
 
   /// Observes until `until_ns`, which the observer may change.
   void listen(const std::int64_t& until_ns, const observer& to);
@@ -174,9 +174,9 @@ class link_monitor {
   [[nodiscard]] const stream_survey& survey() const noexcept { return survey_; }
   /// Where the bytes come from.
   [[nodiscard]] transport& port() const noexcept { return *transport_; }
-  /// The bytes that follow are those of a lidar like `which`, valid as long as this, and do not continue
+  /// The bytes that follow are those of a lidar like `model`, valid as long as this, and do not continue
   /// the earlier ones.
-  void read_as(const model& which);
+  void read_as(const model& model);
   /// Finds the lidar at the transport, as search() does, in this time, which begins now.
   [[nodiscard]] result<recognised_lidar> search(const search_options& known, std::int64_t time_ns);
   /// Of the last one.

@@ -24,8 +24,8 @@ struct device_snapshot {
 
   /// The information or the health, if the reply contains it.
   void take(const response_view& reply);
-  /// The frequency, the sample rate or the offset of zero, if this is the reply of a lidar like `which` to such a command.
-  void take_setting(command asked, const response_view& reply, const model& which);
+  /// The frequency, the sample rate or the offset of zero, if this is the reply of a lidar like `model` to such a command.
+  void take_setting(command asked, const response_view& reply, const model& model);
 };
 
 /// All commands that were sent. Those that were disturbed by packets, a boot or a pause of the host
@@ -35,18 +35,18 @@ class reply_statistics {
   void add(exchange made) { made_.push_back(std::move(made)); }
   [[nodiscard]] const std::vector<exchange>& exchanges() const noexcept { return made_; }
   [[nodiscard]] std::ptrdiff_t answered() const noexcept;
-  /// From most of its replies, which are those of a lidar like `which`.
-  [[nodiscard]] device_snapshot snapshot(const model& which) const;
+  /// From most of its replies, which are those of a lidar like `model`.
+  [[nodiscard]] device_snapshot snapshot(const model& model) const;
   /// Adds diagnoses and numbers. If the host paused, a few late replies are its own.
-  void judge(stage_report& report, bool host_paused, const model& which) const;
-  /// Whether a query that each lidar like `which` answers was never answered, and others were.
-  [[nodiscard]] bool has_mute_question(const model& which) const;
+  void judge(stage_report& report, bool host_paused, const model& model) const;
+  /// Whether a query that each lidar like `model` answers was never answered, and others were.
+  [[nodiscard]] bool has_mute_question(const model& model) const;
   /// The lidar is of another model than the one whose queries it got: what it never answers, it does not know.
   void may_know_less() noexcept { knows_less_ = true; }
   /// There were replies, and later none.
-  [[nodiscard]] bool has_died(const model& which) const;
+  [[nodiscard]] bool has_died(const model& model) const;
   /// So many replies were wrong that further commands are useless.
-  [[nodiscard]] bool is_clear(const model& which) const;
+  [[nodiscard]] bool is_clear(const model& model) const;
 
  private:
   struct tally {
@@ -59,11 +59,11 @@ class reply_statistics {
     unsigned missing_at_end = 0;  // consecutive, for any command
     unsigned missing_before = 0;  // the missing ones before these
   };
-  [[nodiscard]] tally count(const model& which) const;
-  /// A query that firmware, or a lidar whose number is not that of `which`, need not support, and without any reply.
-  [[nodiscard]] bool is_unknown(command code, const model& which) const;
+  [[nodiscard]] tally count(const model& model) const;
+  /// A query that firmware, or a lidar whose number is not that of `model`, need not support, and without any reply.
+  [[nodiscard]] bool is_unknown(command code, const model& model) const;
   /// Whether the command 93 was not answered with an angle.
-  [[nodiscard]] bool lacks_zero(const model& which) const;
+  [[nodiscard]] bool lacks_zero(const model& model) const;
   /// Differs from the most frequent reply to the same command.
   [[nodiscard]] bool is_odd(const exchange& one) const;
   /// The most frequent reply; empty if there is none.
@@ -73,9 +73,9 @@ class reply_statistics {
   bool knows_less_ = false;
 };
 
-/// Sends all queries that `which` has, in rounds, and adds the replies. `first_latency_ns`: that of an
+/// Sends all queries that `model` has, in rounds, and adds the replies. `first_latency_ns`: that of an
 /// earlier reply.
-void ask_all(link_monitor& link, reply_statistics& replies, const model& which,
+void ask_all(link_monitor& link, reply_statistics& replies, const model& model,
              std::int64_t first_latency_ns);
 
 }  // namespace g4lidar

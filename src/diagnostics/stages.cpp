@@ -68,19 +68,19 @@ constexpr std::array<std::pair<diagnosis, diagnostic_stage>, 14> last_of_stages{
      {diagnosis::no_returns, diagnostic_stage::returns},
      {diagnosis::usb_latency, diagnostic_stage::usb_latency}}};
 
-/// Whether a lidar like `which` can have measured so many samples in this time; 0 s: not known, and true.
-bool may_measure_in(const model& which, double samples, double seconds) noexcept {
+/// Whether a lidar like `model` can have measured so many samples in this time; 0 s: not known, and true.
+bool may_measure_in(const model& model, double samples, double seconds) noexcept {
   constexpr double far = 2.0;  // beyond the highest rate of the model
-  double most_hz = std::max(which.rates.nominal_hz, which.rates.most_seen_hz);
-  for (const sample_rate_entry& each : which.rates.entries)
+  double most_hz = std::max(model.rates.nominal_hz, model.rates.most_seen_hz);
+  for (const sample_rate_entry& each : model.rates.entries)
     most_hz = std::max<double>(most_hz, each.hz);
   return seconds <= 0.0 || most_hz <= 0.0 || samples <= far * most_hz * seconds;
 }
 
 }  // namespace
 
-std::string one_of(const model& which) {
-  return std::string(article_of(which)).append(" ").append(which.name);
+std::string one_of(const model& model) {
+  return std::string(article_of(model)).append(" ").append(model.name);
 }
 
 diagnostic_stage stage_of(diagnosis what) noexcept {

@@ -37,12 +37,12 @@ class stage_log {
     if (options_.on_stage) options_.on_stage(done);
     stages_.push_back(std::move(done));
   }
-  void skip(diagnostic_stage where, std::string why) {
-    report({.stage = where, .outcome = stage_verdict::skipped, .remark = std::move(why)});
+  void skip(diagnostic_stage stage, std::string why) {
+    report({.stage = stage, .outcome = stage_verdict::skipped, .remark = std::move(why)});
   }
-  /// Skips all stages from `where` on.
-  void skip_from(diagnostic_stage where, const std::string& why) {
-    for (auto at = static_cast<std::size_t>(where); at < diagnostic_stage_count; ++at) {
+  /// Skips all stages from `stage` on.
+  void skip_from(diagnostic_stage stage, const std::string& why) {
+    for (auto at = static_cast<std::size_t>(stage); at < diagnostic_stage_count; ++at) {
       skip(static_cast<diagnostic_stage>(at), why);
     }
   }
@@ -105,7 +105,7 @@ void report_returns(stage_log& log, const stream_statistics& measured, const dev
 void report_latency(stage_log& log, const stream_statistics& measured, std::uint32_t baud,
                     std::string_view name);
 /// "a G4", "an X4".
-[[nodiscard]] std::string one_of(const model& which);
+[[nodiscard]] std::string one_of(const model& model);
 /// "x2, x2l and x3": the words of these models.
 [[nodiscard]] std::string words_of(std::span<const model* const> all);
 /// The number with so many digits in this base.

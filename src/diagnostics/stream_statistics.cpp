@@ -120,7 +120,7 @@ bool stream_statistics::is_steady() {
 
 bool stream_statistics::stands() const { return step_deg().value_or(1.0) <= standing_deg; }
 
-void stream_statistics::take(const reading& observed) {
+void stream_statistics::take(const timed_read& observed) {
   tally_.arrivals.take(observed);
   if (std::max(observed.silence_ns, observed.host_pause_ns) < arrival_statistics::stall_ns) return;
   between_.is_unsure = true;

@@ -31,21 +31,21 @@ class step_median {
   std::optional<double> recent_;
 };
 
-/// The bytes of a quarter of a second at the usual baud rate of `which`.
-[[nodiscard]] constexpr std::uint64_t garbage_bytes(const model& which) noexcept {
+/// The bytes of a quarter of a second at the usual baud rate of `model`.
+[[nodiscard]] constexpr std::uint64_t garbage_bytes(const model& model) noexcept {
   constexpr std::uint64_t bits_of_a_byte = 10;
-  return which.bauds[0] / bits_of_a_byte / 4;
+  return model.bauds[0] / bits_of_a_byte / 4;
 }
 
 class stream_statistics {
  public:
-  /// Of packets like those of `which`, which must be valid as long as this.
+  /// Of packets like those of `model`, which must be valid as long as this.
   /// `is_long`: it runs as long as the lidar, so that it looks at returns now and then only.
-  explicit stream_statistics(const model& which = g4_model, bool is_long = false)
-      : which_(&which), is_long_(is_long) {}
+  explicit stream_statistics(const model& model = g4_model, bool is_long = false)
+      : which_(&model), is_long_(is_long) {}
 
   void take(const observed_event& observed);
-  void take(const reading& observed);
+  void take(const timed_read& observed);
 
   /// The head has reached its speed: from now on packets are evaluated, and all counts begin again.
   void begin();

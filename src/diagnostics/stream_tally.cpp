@@ -56,7 +56,7 @@ void arrival_statistics::add(const arrival_statistics& other) noexcept {
   longest_pause_ns_ = std::max(longest_pause_ns_, other.longest_pause_ns_);
 }
 
-void arrival_statistics::take(const reading& observed) {
+void arrival_statistics::take(const timed_read& observed) {
   bytes_ += observed.count;
   if (!observed.is_backlog && observed.silence_ns < stall_ns) {
     portions_[std::min(observed.count, portions_.size() - 1)] += observed.count;

@@ -38,7 +38,7 @@ struct damage_counts {
 /// The sizes of reads, and the times without bytes.
 class arrival_statistics {
  public:
-  void take(const reading& observed);
+  void take(const timed_read& observed);
   void add(const arrival_statistics& other) noexcept;
   [[nodiscard]] std::uint64_t bytes() const noexcept { return bytes_; }
   /// Times longer than `stall_ns` without bytes, although the program was waiting.
@@ -66,9 +66,9 @@ class arrival_statistics {
 /// or a bridge that holds bytes back, makes some arrivals late and does not change the others.
 class sample_pace {
  public:
-  /// Of samples like those of `which`: the window needs their rate within a half.
-  explicit sample_pace(const model& which = g4_model) noexcept
-      : nominal_ns_(1e9 / first_rate_hz(which)) {
+  /// Of samples like those of `model`: the window needs their rate within a half.
+  explicit sample_pace(const model& model = g4_model) noexcept
+      : nominal_ns_(1e9 / first_rate_hz(model)) {
     window_.clear();
   }
 

@@ -50,28 +50,28 @@ tl::unexpected<error> several(const std::vector<port_info>& ports) {
   return failure(task::finding, problem::several_ports, paths);
 }
 
-result<port_info> the_only_one(std::vector<port_info> ports, std::string_view which) {
-  if (ports.empty()) return failure(task::finding, problem::no_port, which);
+result<port_info> the_only_one(std::vector<port_info> ports, std::string_view name) {
+  if (ports.empty()) return failure(task::finding, problem::no_port, name);
   if (ports.size() > 1) return several(ports);
   return std::move(ports.front());
 }
 
-result<port_info> at_usb_place(std::string_view place, std::string_view which) {
-  if (place.empty()) return failure(task::finding, problem::bad_option, which);
+result<port_info> at_usb_place(std::string_view place, std::string_view name) {
+  if (place.empty()) return failure(task::finding, problem::bad_option, name);
   auto ports = list_ports();
   if (!ports) return tl::unexpected(ports.error());
   std::erase_if(*ports, [&](const port_info& port) { return port.bus_path != place; });
-  return the_only_one(*std::move(ports), which);
+  return the_only_one(*std::move(ports), name);
 }
 
 bool is_serial_number(std::string_view digits) noexcept {
   return digits.size() == 16 && digits.find_first_not_of("0123456789") == std::string_view::npos;
 }
 
-result<port_info> with_serial_number(std::string_view digits, std::string_view which,
+result<port_info> with_serial_number(std::string_view digits, std::string_view name,
                                      const find_options& options) {
   if (!is_serial_number(digits)) {
-    return failure(task::finding, problem::bad_option, std::string(which) + ", not 16 digits");
+    return failure(task::finding, problem::bad_option, std::string(name) + ", not 16 digits");
   }
   const auto ports = candidates(options);
   if (!ports) return tl::unexpected(ports.error());
@@ -82,7 +82,7 @@ result<port_info> with_serial_number(std::string_view digits, std::string_view w
     if (!found && !unasked && is_unasked(found.error())) unasked = found.error();
   }
   if (unasked) return tl::unexpected(*unasked);
-  return failure(task::finding, problem::no_port, which);
+  return failure(task::finding, problem::no_port, name);
 }
 
 result<port_info> the_only_lidar(const find_options& options) {
@@ -113,15 +113,15 @@ result<std::vector<found_lidar>> find_lidars(const find_options& options) {
   return found;
 }
 
-result<port_info> select_port(std::string_view which, const find_options& options) {
-  if (which.empty()) return the_only_lidar(options);
-  if (const auto wrong = misspelled(which)) return tl::unexpected(*wrong);
-  if (which.starts_with(usb_prefix)) return at_usb_place(which.substr(usb_prefix.size()), which);
-  if (which.starts_with(serial_prefix)) {
-    return with_serial_number(which.substr(serial_prefix.size()), which, options);
+result<port_info> select_port(std::string_view name, const find_options& options) {
+  if (name.empty()) return the_only_lidar(options);
+  if (const auto wrong = misspelled(name)) return tl::unexpected(*wrong);
+  if (name.starts_with(usb_prefix)) return at_usb_place(name.substr(usb_prefix.size()), name);
+  if (name.starts_with(serial_prefix)) {
+    return with_serial_number(name.substr(serial_prefix.size()), name, options);
   }
   port_info named;
-  named.path = which;
+  named.path = name;
   return named;
 }
 

@@ -24,8 +24,8 @@ enum class stop_attempts : std::uint8_t {
 class inquiry {
  public:
   /// `samples` as the device sends them.
-  inquiry(transport& port, sample_format samples, stop_attempts how) noexcept
-      : port_(port), how_(how), input_(samples), link_(input_, &port, times_for(how)) {}
+  inquiry(transport& port, sample_format samples, stop_attempts attempts) noexcept
+      : port_(port), how_(attempts), input_(samples), link_(input_, &port, times_for(attempts)) {}
 
   [[nodiscard]] result<device_information> ask(std::int64_t deadline_ns) {
     session& talk = link_.talk();

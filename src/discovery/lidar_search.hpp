@@ -70,7 +70,7 @@ class lidar_search {
   [[nodiscard]] found judge_number(lidar_signs known);
   [[nodiscard]] found judge_reply();
   [[nodiscard]] result<std::optional<device_information>> stop_and_ask(const model& like,
-                                                                       stop_attempts how);
+                                                                       stop_attempts attempts);
   [[nodiscard]] recognised_lidar made(std::vector<const model*> candidates,
                                       const lidar_signs& signs) const;
   [[nodiscard]] lidar_signs signs() const noexcept;

@@ -37,17 +37,17 @@ lidar_signs lidar_search::signs() const noexcept {
 }
 
 recognised_lidar lidar_search::made(std::vector<const model*> candidates,
-                                    const lidar_signs& of) const {
+                                    const lidar_signs& signs) const {
   recognised_lidar lidar;
   lidar.model = options_.model != nullptr ? options_.model : candidates.front();
   lidar.baud = has_fixed_rate_ ? options_.baud : port_.baud();  // that of a bridge is not known
-  lidar.was_scanning = of.sample_bytes != 0;
-  const bool is_numbered = of.id != 0 || of.ct_id_low_bits != 0;
+  lidar.was_scanning = signs.sample_bytes != 0;
+  const bool is_numbered = signs.id != 0 || signs.ct_id_low_bits != 0;
   lidar.by = options_.model != nullptr ? known_by::user
              : is_numbered             ? known_by::number
-             : of.sample_bytes != 0    ? known_by::samples
+             : signs.sample_bytes != 0 ? known_by::samples
                                        : known_by::nothing;
-  lidar.is_silent = !options_.listen_only && of.answers == presence::no &&
+  lidar.is_silent = !options_.listen_only && signs.answers == presence::no &&
                     lidar.model->link == link_kind::two_way;
   lidar.speaks_telnet = heard_.change() == stream_change::telnet;
   if (device_) {
@@ -191,12 +191,12 @@ lidar_search::found lidar_search::judge_reply() {
 
 /// What the device answers after a stop; nothing if it does not.
 result<std::optional<device_information>> lidar_search::stop_and_ask(const model& like,
-                                                                     stop_attempts how) {
+                                                                     stop_attempts attempts) {
   // If it does not stop, the rest of the time shows what else it may be.
   const std::int64_t one_ns = in_ns(one_stop_ns);
   const std::int64_t several_ns = std::min(in_ns(stops_ns), deadline_ns_ - information_ns);
-  auto answered = inquiry(port_, like.samples, how)
-                      .ask(how == stop_attempts::one ? one_ns : std::max(one_ns, several_ns));
+  auto answered = inquiry(port_, like.samples, attempts)
+                      .ask(attempts == stop_attempts::one ? one_ns : std::max(one_ns, several_ns));
   if (answered) return *answered;
   const problem why = answered.error().code();
   if (why == problem::silence || why == problem::garbage || why == problem::does_not_stop) {

@@ -16,7 +16,7 @@
 #include <utility>
 
 #include "g4lidar/discovery.hpp"
-#include "sim/host/claim.hpp"
+#include "sim/host/name_claim.hpp"
 #include "transport/directory.hpp"
 #include "transport/port_holder.hpp"
 
@@ -114,7 +114,7 @@ void append_simulated_ports(std::vector<port_info>& ports) {
     const fs::path target = fs::read_symlink(each->path(), none);
     // Anything else may be the terminal of a person or another program: it is not to be written to.
     if (none || !target.native().starts_with("/dev/pts/")) continue;
-    if (!fs::exists(target, none) || !sim::claim(target.native()).is_held()) continue;
+    if (!fs::exists(target, none) || !sim::name_claim(target.native()).is_held()) continue;
     port_info port;
     port.path = each->path().native();
     port.bus_path = "sim-" + each->path().filename().native();

@@ -12,7 +12,7 @@ namespace g4lidar {
 namespace {
 
 std::unique_ptr<scan_source> make_source(scan_source::parts& parts, const lidar_options& options) {
-  if (parts.link.from().traits().answers) {
+  if (parts.link.port_connector().traits().answers) {
     if (options.listen_only || options.model->link == link_kind::one_way) {
       return std::make_unique<listening_driver>(parts, options);
     }
@@ -23,9 +23,9 @@ std::unique_ptr<scan_source> make_source(scan_source::parts& parts, const lidar_
 
 }  // namespace
 
-lidar::driver::driver(std::unique_ptr<connector> from, const lidar_options& options,
+lidar::driver::driver(std::unique_ptr<connector> connector, const lidar_options& options,
                       const g4lidar::recognition& known)
-    : parts_{connection(std::move(from), options.device),
+    : parts_{connection(std::move(connector), options.device),
              point_pipeline(options.tuning.transport_delay.count(), options.partial_scans,
                             *options.model),
              {},
@@ -33,17 +33,17 @@ lidar::driver::driver(std::unique_ptr<connector> from, const lidar_options& opti
       source_(make_source(parts_, options)),
       points_(largest_scan(*options.model)) {
   if (options.zero_angle)
-    parts_.pipeline.zero().set(*options.zero_angle, zero_offset::known_by::user);
+    parts_.pipeline.zero().set(*options.zero_angle, zero_offset::stated_by::user);
 }
 
 lidar::driver::~driver() { static_cast<void>(close()); }
 
 result<void> lidar::driver::open() {
-  if (parts_.link.from().traits().recognised.was_stopped) {
+  if (parts_.link.port_connector().traits().recognised.was_stopped) {
     parts_.events.put({lidar_event::kind::found_scanning, problem::timeout, parts_.link.now_ns()});
   }
   auto opened = source_->open();
-  if (opened) parts_.recognised.record(parts_.link.from());
+  if (opened) parts_.recognised.record(parts_.link.port_connector());
   return opened;
 }
 

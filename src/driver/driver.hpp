@@ -19,7 +19,7 @@ namespace g4lidar {
 /// *Single thread* except wake(). The calls are loops over the steps of the source of the scans.
 class G4LIDAR_HIDDEN lidar::driver {
  public:
-  driver(std::unique_ptr<connector> from, const lidar_options& options,
+  driver(std::unique_ptr<connector> connector, const lidar_options& options,
          const g4lidar::recognition& known);
   driver(const driver&) = delete;
   driver& operator=(const driver&) = delete;
@@ -30,8 +30,8 @@ class G4LIDAR_HIDDEN lidar::driver {
   result<void> stop() { return source_->stop(); }
   result<void> close();
   void release() noexcept;
-  result<answer> ask(const request& wanted, while_scanning how) {
-    return source_->ask(wanted, how);
+  result<answer> ask(const request& wanted, while_scanning if_scanning) {
+    return source_->ask(wanted, if_scanning);
   }
   /// Nothing at `until_ns()`, which each step asks; errors for which `goes_on` is true do not end it.
   template <class Until, class GoesOn>
@@ -93,15 +93,15 @@ class G4LIDAR_HIDDEN lidar::driver {
 };
 
 /// The end of a call, by the clock of the timeouts of calls.
-[[nodiscard]] inline std::int64_t deadline_after_ns(const scan_source& of,
+[[nodiscard]] inline std::int64_t deadline_after_ns(const scan_source& source,
                                                     lidar::milliseconds timeout) noexcept {
-  return of.deadline_after_ns(limited_ns(timeout));
+  return source.deadline_after_ns(limited_ns(timeout));
 }
 /// From now until such a time: 0 if it is over; milliseconds::max() for never_ns.
-[[nodiscard]] inline lidar::milliseconds time_until(const scan_source& of,
+[[nodiscard]] inline lidar::milliseconds time_until(const scan_source& source,
                                                     std::int64_t at_ns) noexcept {
   if (at_ns == never_ns) return lidar::milliseconds::max();
-  const std::chrono::nanoseconds left(at_ns - of.caller_ns());
+  const std::chrono::nanoseconds left(at_ns - source.caller_ns());
   return std::max(std::chrono::ceil<lidar::milliseconds>(left), lidar::milliseconds(0));
 }
 

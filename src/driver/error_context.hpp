@@ -55,47 +55,47 @@ class error_context {
   }
 
   /// "8000, 16000 or 18000".
-  error_context& add_rates(const model& which) noexcept {
-    const std::uint8_t count = rate_count(which);
+  error_context& add_rates(const model& model) noexcept {
+    const std::uint8_t count = rate_count(model);
     for (std::uint8_t code = 0; code < count; ++code) {
       const std::string_view before = code == 0 ? "" : code + 1 == count ? " or " : ", ";
-      add(before).add(rate_hz_of_code(which, code));
+      add(before).add(rate_hz_of_code(model, code));
     }
     return *this;
   }
   /// "5 Hz to 12 Hz".
-  error_context& add_frequencies(const model& which) noexcept {
+  error_context& add_frequencies(const model& model) noexcept {
     const auto hz = [](std::uint16_t dhz) {
       return scan_frequency{static_cast<std::uint16_t>(10 * dhz)};
     };
-    return add(hz(which.frequency.min_dhz)).add(" to ").add(hz(which.frequency.max_dhz));
+    return add(hz(model.frequency.min_dhz)).add(" to ").add(hz(model.frequency.max_dhz));
   }
   /// " of a G6".
-  error_context& add_owner(const model& which) noexcept {
-    return add(" of ").add(article_of(which)).add(" ").add(which.name);
+  error_context& add_owner(const model& model) noexcept {
+    return add(" of ").add(article_of(model)).add(" ").add(model.name);
   }
   /// What the commands of a model set, and how its speed is set without: "(commands set nothing; its speed: ...)".
-  error_context& add_ways(const model& which) noexcept {
+  error_context& add_ways(const model& model) noexcept {
     std::string_view before = " (commands set ";
     const auto next = [&](request_kind change, std::string_view name) {
-      if (!has_request(which, change)) return false;
+      if (!has_request(model, change)) return false;
       add(before).add(name);
       before = "; ";
       return true;
     };
-    if (next(request_kind::set_sample_rate, "sample_rate: ")) add_rates(which);
-    if (next(request_kind::set_scan_frequency, "frequency: ")) add_frequencies(which);
+    if (next(request_kind::set_sample_rate, "sample_rate: ")) add_rates(model);
+    if (next(request_kind::set_scan_frequency, "frequency: ")) add_frequencies(model);
     static_cast<void>(next(request_kind::set_direction, "direction; constant; idle"));
     static_cast<void>(next(request_kind::set_protection, "protection"));
     if (before != "; ") add(before).add("nothing");
-    if (!which.frequency.pin.empty())
-      add("; its speed: voltage or PWM at pin ").add(which.frequency.pin);
+    if (!model.frequency.pin.empty())
+      add("; its speed: voltage or PWM at pin ").add(model.frequency.pin);
     return add(")");
   }
   /// How the speed of a model is set without commands, behind `before`; nothing where commands set it.
-  error_context& add_speed(const model& which, std::string_view before) noexcept {
-    if (which.frequency.pin.empty()) return *this;
-    add(before).add("a voltage or PWM at its pin ").add(which.frequency.pin);
+  error_context& add_speed(const model& model, std::string_view before) noexcept {
+    if (model.frequency.pin.empty()) return *this;
+    add(before).add("a voltage or PWM at its pin ").add(model.frequency.pin);
     return add("; most boards leave it at their default");
   }
 

@@ -107,8 +107,8 @@ result<lidar> lidar::open(std::string_view device, const lidar_options& options)
   return open(named);
 }
 
-result<lidar> lidar::open(std::unique_ptr<connector> from, const lidar_options& options) {
-  const connector_traits behind = from->traits();
+result<lidar> lidar::open(std::unique_ptr<connector> connector, const lidar_options& options) {
+  const connector_traits behind = connector->traits();
   const model* const stated = behind.recognised.model;
   if (const auto wrong = problem_with_model(options, behind.recognised, "the source")) {
     return tl::unexpected(*wrong);
@@ -135,7 +135,7 @@ result<lidar> lidar::open(std::unique_ptr<connector> from, const lidar_options& 
     known.by = used.model->has_number(known.number) ? known_by::number : known_by::nothing;
     known.candidates = {};
   }
-  auto made = std::make_unique<driver>(std::move(from), used, known);
+  auto made = std::make_unique<driver>(std::move(connector), used, known);
   if (auto opened = made->open(); !opened) return tl::unexpected(opened.error());
   return lidar(std::move(made));
 }
@@ -180,15 +180,15 @@ result<void> lidar_event_loop::process() {
 void lidar::wake() noexcept {
   if (driver_) driver_->wake();
 }
-result<answer> lidar::ask(const request& wanted, while_scanning how) {
+result<answer> lidar::ask(const request& wanted, while_scanning if_scanning) {
   if (!driver_) return moved_from();
-  if (how > while_scanning::stop_and_resume) {
+  if (if_scanning > while_scanning::stop_and_resume) {
     return failure(task::asking, problem::bad_option, "how: refuse or stop_and_resume");
   }
   if (wanted.what > g4lidar::request_kind::stop) {
     return failure(task::asking, problem::bad_option, "a request that namespace requests has");
   }
-  return driver_->ask(wanted, how);
+  return driver_->ask(wanted, if_scanning);
 }
 const device_information& lidar::information() const noexcept {
   static constexpr device_information none{};

@@ -20,31 +20,31 @@ std::string both(const std::array<Number, 2>& of) {
   return std::to_string(of[0]) + (of[1] != 0 ? ", " + std::to_string(of[1]) : "");
 }
 
-std::string sample_rates_of(const model& which) {
+std::string sample_rates_of(const model& model) {
   std::string text;
-  for (std::uint8_t code = 0; code < rate_count(which); ++code) {
-    text += (code == 0 ? "" : ", ") + std::to_string(rate_hz_of_code(which, code));
+  for (std::uint8_t code = 0; code < rate_count(model); ++code) {
+    text += (code == 0 ? "" : ", ") + std::to_string(rate_hz_of_code(model, code));
   }
-  if (which.rates.least_seen_hz == 0) return text;
-  return text + " (" + std::to_string(which.rates.least_seen_hz) + " to " +
-         std::to_string(which.rates.most_seen_hz) + " seen)";
+  if (model.rates.least_seen_hz == 0) return text;
+  return text + " (" + std::to_string(model.rates.least_seen_hz) + " to " +
+         std::to_string(model.rates.most_seen_hz) + " seen)";
 }
 
-std::string frequencies_of(const model& which) {
-  const auto& [min_dhz, max_dhz, reply, ct, pin] = which.frequency;
+std::string frequencies_of(const model& model) {
+  const auto& [min_dhz, max_dhz, reply, ct, pin] = model.frequency;
   if (max_dhz == 0) return "pin " + std::string(pin);
   return text_of_number(min_dhz / 10.0) + " to " + text_of_number(max_dhz / 10.0);
 }
 
-std::string samples_of(const model& which) {
-  const sample_layout layout = which.samples.layout;
+std::string samples_of(const model& model) {
+  const sample_layout layout = model.samples.layout;
   std::string text = std::to_string(sample_size(layout)) + " bytes";
   if (const int bits = intensity_bits(layout); bits != 0)
     text += ", " + std::to_string(bits) + " bits";
   return text + (has_sample_flags(layout) ? ", flags" : "");
 }
 
-std::string commands_of(const model& which) {
+std::string commands_of(const model& model) {
   using enum request_kind;
   constexpr std::array<std::pair<request_kind, std::string_view>, 7> all{
       {{device_info, "information, health, restart"},
@@ -56,26 +56,26 @@ std::string commands_of(const model& which) {
        {request_kind::pitch, "pitch"}}};
   std::string text;
   for (const auto& [kind, name] : all) {
-    if (!has_request(which, kind)) continue;
+    if (!has_request(model, kind)) continue;
     text.append(text.empty() ? "" : ", ").append(name);
-    if (kind == set_protection && which.protection == presence::unknown) text += " (not known)";
+    if (kind == set_protection && model.protection == presence::unknown) text += " (not known)";
   }
   return text.empty() ? "none" : text;
 }
 
 }  // namespace
 
-std::vector<model_fact> facts_of(const model& which) {
+std::vector<model_fact> facts_of(const model& model) {
   const auto metres = [](std::uint16_t mm) { return text_of_number(mm / 1000.0); };
-  return {{"word", std::string(which.word)},
-          {"number", both(which.ids)},
-          {"baud", both(which.bauds)},
-          {"samples per second", sample_rates_of(which)},
-          {"frequency in Hz", frequencies_of(which)},
-          {"range in m", metres(which.range.min_mm) + " to " + metres(which.range.max_mm)},
-          {"sample", samples_of(which)},
-          {"0 points", which.turn_deg == 0 ? "ahead" : "back"},
-          {"commands", commands_of(which)}};
+  return {{"word", std::string(model.word)},
+          {"number", both(model.ids)},
+          {"baud", both(model.bauds)},
+          {"samples per second", sample_rates_of(model)},
+          {"frequency in Hz", frequencies_of(model)},
+          {"range in m", metres(model.range.min_mm) + " to " + metres(model.range.max_mm)},
+          {"sample", samples_of(model)},
+          {"0 points", model.turn_deg == 0 ? "ahead" : "back"},
+          {"commands", commands_of(model)}};
 }
 
 std::vector<model_fact> facts_of(const recognition& what) {

@@ -49,15 +49,15 @@ error bad(std::string_view what, std::int64_t given, std::string_view unit) noex
 
 /// "sample_rate: 8000, 16000 or 18000 of a G6"; "frequency: 500 to 1200 (5 to 12 Hz of a G4), not 1300"; "idle: off or
 /// on".
-error bad_setting(const setting_info& of, const model& which, std::uint16_t given) noexcept {
-  error_context words(of.name);
+error bad_setting(const setting_info& setting, const model& model, std::uint16_t given) noexcept {
+  error_context words(setting.name);
   words.add(": ");
-  if (of.type == setting_type::whole) return bad(words.add_rates(which).add_owner(which));
-  if (of.type != setting_type::decimal)
-    return bad(words.add(of.values[0].word).add(" or ").add(of.values[1].word));
-  const auto [least_dhz, most_dhz, reply, ct, pin] = which.frequency;
+  if (setting.type == setting_type::whole) return bad(words.add_rates(model).add_owner(model));
+  if (setting.type != setting_type::decimal)
+    return bad(words.add(setting.values[0].word).add(" or ").add(setting.values[1].word));
+  const auto [least_dhz, most_dhz, reply, ct, pin] = model.frequency;
   words.add(least_dhz * 10U).add(" to ").add(most_dhz * 10U).add(" (").add(least_dhz / 10U);
-  words.add(" to ").add(most_dhz / 10U).add(" Hz").add_owner(which).add(")");
+  words.add(" to ").add(most_dhz / 10U).add(" Hz").add_owner(model).add(")");
   return bad(words, given, "");
 }
 

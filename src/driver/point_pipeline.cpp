@@ -13,7 +13,7 @@ const event* point_pipeline::next() noexcept {
     if (const auto* const heard = std::get_if<response_view>(found)) {
       const auto stated = replies_.take(*heard, decoder_.like());
       if (stated.firmware) identified(*stated.firmware);
-      if (stated.zero) zero().set(*stated.zero, zero_offset::known_by::device);
+      if (stated.zero) zero().set(*stated.zero, zero_offset::stated_by::device);
     } else {
       replies_.pass();
     }
@@ -23,17 +23,17 @@ const event* point_pipeline::next() noexcept {
   return found;
 }
 
-void point_pipeline::become(const model& which, std::uint32_t baud) {
+void point_pipeline::become(const model& model, std::uint32_t baud) {
   end();
   drop_scan();
-  which_ = &which;
-  input_.become(which.samples);
-  decoder_.become(which);
+  which_ = &model;
+  input_.become(model.samples);
+  decoder_.become(model);
   decoder_.forget();
   decoder_.follow(baud);
-  storage_.resize(largest_scan(which));
-  assembler_ = scan_assembler(storage_.all(), which);
-  begin(first_rate_hz(which));
+  storage_.resize(largest_scan(model));
+  assembler_ = scan_assembler(storage_.all(), model);
+  begin(first_rate_hz(model));
 }
 
 void point_pipeline::identified(const device_information& who) noexcept {
@@ -75,7 +75,7 @@ void point_pipeline::add(packet_view packet) noexcept {
   open_ = decoder_.decode(packet, input_.arrival_ns(), input_.unparsed().size(),
                           fits ? room.first<max_samples>() : std::span(spare_), lost);
   points_ += open_.points.size();
-  if (auto* const made = ring_.find()) made->ring.push(open_.points);
+  if (auto* const made = ring_.if_made()) made->ring.push(open_.points);
   if (stream_counts_.crc.last() == ct_check::result::mismatch) assembler_.crc_mismatch();
   if (lost) assembler_.lost();  // whole packets are missing, so no bytes were skipped
   is_open_ = true;
@@ -91,13 +91,13 @@ void point_pipeline::keep(const scan& found) noexcept {
 }
 
 ring_read point_pipeline::read(std::span<point> out) noexcept {
-  if (ring_.find() == nullptr) {
+  if (ring_.if_made() == nullptr) {
     lidar_ring& first = ring();
     if (scan_) first.push(scan_->points);
     first.push(assembler_.unfinished());
     if (is_open_) first.push(open_.points);
   }
-  return ring_.get().reader.read(out);
+  return ring_.made_once().reader.read(out);
 }
 
 void point_pipeline::begin(std::uint32_t sample_rate_hz, bool counts_times) noexcept {

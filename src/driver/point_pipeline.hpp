@@ -52,41 +52,44 @@ class point_storage {
   std::size_t count_;
 };
 
-/// *Allocates on open.* The ring of a lidar and its first reader. They are made by the first call of
-/// get(), in memory that takes no pages before.
-class ring_on_demand {
+/// *Allocates on open.* The ring of a lidar and its first reader, which are made when the first of them is wanted, in
+/// memory that takes no pages before.
+class lazy_ring {
  public:
   /// A ring that begins with point 0, and its reader. *Any thread.*
-  struct contents {
-    explicit contents(std::span<lidar_ring::slot> memory) noexcept : ring(memory) {}
+  struct ring_and_reader {
+    explicit ring_and_reader(std::span<lidar_ring::slot> memory) noexcept : ring(memory) {}
 
     lidar_ring ring;
     lidar_ring::reader reader = ring.make_reader();
   };
 
   /// For the points of at least 1.8 s at the highest sample rate of the model.
-  explicit ring_on_demand(const model& which)
-      : size_(std::bit_ceil(std::max(least, std::size_t{highest_rate_hz(which)} * 9 / 5))),
-        memory_(::operator new(sizeof(contents) + size_ * sizeof(lidar_ring::slot))) {
-    static_assert(std::is_trivially_destructible_v<contents> &&
+  explicit lazy_ring(const model& model)
+      : size_(std::bit_ceil(std::max(least, std::size_t{highest_rate_hz(model)} * 9 / 5))),
+        memory_(::operator new(sizeof(ring_and_reader) + size_ * sizeof(lidar_ring::slot))) {
+    static_assert(std::is_trivially_destructible_v<ring_and_reader> &&
                   std::is_trivially_destructible_v<lidar_ring::slot>);
-    static_assert(sizeof(contents) % alignof(lidar_ring::slot) == 0);
+    static_assert(sizeof(ring_and_reader) % alignof(lidar_ring::slot) == 0);
   }
-  ring_on_demand(const ring_on_demand&) = delete;
-  ring_on_demand& operator=(const ring_on_demand&) = delete;
-  ~ring_on_demand() { ::operator delete(memory_); }
+  lazy_ring(const lazy_ring&) = delete;
+  lazy_ring& operator=(const lazy_ring&) = delete;
+  ~lazy_ring() { ::operator delete(memory_); }
 
   /// *Any thread.*
-  [[nodiscard]] contents& get() noexcept {
+  [[nodiscard]] ring_and_reader& made_once() noexcept {
     std::call_once(once_, [this] {
-      auto* const slots = reinterpret_cast<lidar_ring::slot*>(static_cast<contents*>(memory_) + 1);
+      auto* const slots =
+          reinterpret_cast<lidar_ring::slot*>(static_cast<ring_and_reader*>(memory_) + 1);
       std::uninitialized_value_construct_n(slots, size_);
-      made_.store(new (memory_) contents({slots, size_}), std::memory_order_release);
+      made_.store(new (memory_) ring_and_reader({slots, size_}), std::memory_order_release);
     });
-    return *find();
+    return *if_made();
   }
-  /// Nothing before the first call of get().
-  [[nodiscard]] contents* find() const noexcept { return made_.load(std::memory_order_acquire); }
+  /// Nothing before the first call of made_once().
+  [[nodiscard]] ring_and_reader* if_made() const noexcept {
+    return made_.load(std::memory_order_acquire);
+  }
 
  private:
   static constexpr std::size_t least = 16'384;
@@ -94,7 +97,7 @@ class ring_on_demand {
   std::size_t size_;  // in points
   void* memory_;
   std::once_flag once_;
-  std::atomic<contents*> made_ = nullptr;
+  std::atomic<ring_and_reader*> made_ = nullptr;
 };
 
 /// *Single thread, allocates on open.* The bytes of one read are fed at a time. Then, until nothing
@@ -106,14 +109,14 @@ class ring_on_demand {
 /// So a scan is delivered before the following bytes are parsed, and nothing here calls back.
 class point_pipeline {
  public:
-  point_pipeline(std::int64_t transport_delay_ns, bool partial_scans, const model& which = g4_model)
-      : which_(&which),
+  point_pipeline(std::int64_t transport_delay_ns, bool partial_scans, const model& model = g4_model)
+      : which_(&model),
         partial_scans_(partial_scans),
-        input_(which.samples),
-        decoder_(transport_delay_ns, which),
-        ring_(which),
-        storage_(largest_scan(which)),
-        assembler_(storage_.all(), which) {}
+        input_(model.samples),
+        decoder_(transport_delay_ns, model),
+        ring_(model),
+        storage_(largest_scan(model)),
+        assembler_(storage_.all(), model) {}
 
   /// The bytes of one read at a time, and the place in them. Fed only if is_empty().
   [[nodiscard]] event_reader& input() noexcept { return input_; }
@@ -146,9 +149,9 @@ class point_pipeline {
   void sent(bytes command) noexcept { replies_.sent(command); }
   /// Packets are read as the firmware of this device sends them.
   void identified(const device_information& who) noexcept;
-  /// The bytes that follow are those of a lidar like `which`, whatever the size of its samples: a new stream of points
+  /// The bytes that follow are those of a lidar like `model`, whatever the size of its samples: a new stream of points
   /// begins with the usual sample rate. Only if is_empty(). *Allocates.*
-  void become(const model& which, std::uint32_t baud);
+  void become(const model& model, std::uint32_t baud);
   /// What is added to all angles.
   [[nodiscard]] zero_offset& zero() noexcept { return decoder_.zero(); }
 
@@ -175,13 +178,13 @@ class point_pipeline {
   // ---- points ----
 
   /// The ring, which is written from the first call on. *Any thread.*
-  [[nodiscard]] lidar_ring& ring() noexcept { return ring_.get().ring; }
+  [[nodiscard]] lidar_ring& ring() noexcept { return ring_.made_once().ring; }
   /// The oldest points that this function has not returned yet. The first call begins with those of
   /// a scan that was not taken, and of the unfinished revolution.
   [[nodiscard]] ring_read read(std::span<point> out) noexcept;
   /// Drops the points that read() would return, and returns their number.
   std::uint64_t drop_points() noexcept {
-    auto* const made = ring_.find();
+    auto* const made = ring_.if_made();
     if (made == nullptr) return 0;
     const std::uint64_t left = made->reader.ahead();
     made->reader = made->ring.make_reader();
@@ -189,7 +192,7 @@ class point_pipeline {
   }
   /// The points that were decoded before the ring was written.
   [[nodiscard]] std::uint64_t unwritten() const noexcept {
-    const auto* const made = ring_.find();
+    const auto* const made = ring_.if_made();
     return points_ - (made != nullptr ? made->ring.written() : 0);
   }
   /// All counts except those of the caller.
@@ -206,7 +209,7 @@ class point_pipeline {
   event_reader input_;
   timed_decoder decoder_;
   reply_watch replies_;
-  ring_on_demand ring_;
+  lazy_ring ring_;
   point_storage storage_;
   scan_assembler assembler_;
   std::array<point, max_samples> spare_{};  // used where the storage ends

@@ -33,8 +33,8 @@ enum class demand : std::uint8_t {
 class read_schedule {
  public:
   /// Of a lidar of this model.
-  explicit read_schedule(const model& which = g4_model) noexcept
-      : which_(&which), serial_byte_ns_(byte_time_ns(which.bauds[0])) {}
+  explicit read_schedule(const model& model = g4_model) noexcept
+      : which_(&model), serial_byte_ns_(byte_time_ns(model.bauds[0])) {}
 
   /// Another transport, with so many bits per second. 0: bytes take no time, and every read is
   /// worth it. The system keeps `kept` bytes while nobody reads; 0: not known.

@@ -24,8 +24,8 @@ enum class reading : std::uint8_t {
 /// *Single thread.* *Allocates on open.*
 class receiver {
  public:
-  explicit receiver(std::chrono::nanoseconds batch, const model& which = g4_model)
-      : batch_ns_(batch.count()), pace_(which) {}
+  explicit receiver(std::chrono::nanoseconds batch, const model& model = g4_model)
+      : batch_ns_(batch.count()), pace_(model) {}
 
   /// Another transport follows. `baud` 0: bytes take no time. See read_schedule.
   void reset(std::uint32_t baud, std::size_t kept, std::int64_t now_ns) noexcept {
@@ -33,19 +33,19 @@ class receiver {
     read_until_ns_ = now_ns;
   }
 
-  /// What is received comes from a lidar like `which`. Before reset().
-  void become(const model& which) noexcept { pace_ = read_schedule(which); }
+  /// What is received comes from a lidar like `model`. Before reset().
+  void become(const model& model) noexcept { pace_ = read_schedule(model); }
 
   /// One read, which waits until bytes arrive or the deadline. The result is valid until the next
   /// read. `held` bytes of a packet have arrived, and at least `missing` have not.
-  [[nodiscard]] result<received> receive(transport& from, reading how, std::size_t held,
+  [[nodiscard]] result<received> receive(transport& port, reading reading, std::size_t held,
                                          std::size_t missing, std::int64_t deadline_ns) noexcept {
-    auto got = read(from, how, again_ns(how, held, missing), deadline_ns);
+    auto got = read(port, reading, again_ns(reading, held, missing), deadline_ns);
     // A program that is woken before each call must make progress, too: available bytes are read.
-    if (is_woken(got)) got = from.read({buffer_.get(), size}, at_once);
+    if (is_woken(got)) got = port.read({buffer_.get(), size}, at_once);
     if (is_woken(got)) return received{};
     if (!got) return got;
-    read_until_ns_ = got->count == 0 ? from.now_ns() : got->arrival_ns;
+    read_until_ns_ = got->count == 0 ? port.now_ns() : got->arrival_ns;
     if (got->count == 0) return got;
     pace_.received(got->count, got->arrival_ns);
     return got;
@@ -63,11 +63,11 @@ class receiver {
   [[nodiscard]] std::int64_t read_until_ns() const noexcept { return read_until_ns_; }
 
   /// When a reading is worth its system calls; what comes before that is not waited for.
-  [[nodiscard]] std::int64_t again_ns(reading how, std::size_t held,
+  [[nodiscard]] std::int64_t again_ns(reading pace, std::size_t held,
                                       std::size_t missing) const noexcept {
-    if (how == reading::batched) return read_until_ns_ + batch_ns_;
-    if (how == reading::at_once) return 0;
-    return pace_.next_ns(held, missing, how == reading::scans ? demand::scans : demand::points);
+    if (pace == reading::batched) return read_until_ns_ + batch_ns_;
+    if (pace == reading::at_once) return 0;
+    return pace_.next_ns(held, missing, pace == reading::scans ? demand::scans : demand::points);
   }
 
  private:
@@ -79,20 +79,20 @@ class receiver {
   }
   /// Waits until a read is worth it, then for bytes. After a wait they have usually arrived; a poll
   /// first would be an additional call.
-  [[nodiscard]] result<received> read(transport& from, reading how, std::int64_t again_ns,
+  [[nodiscard]] result<received> read(transport& port, reading pace, std::int64_t again_ns,
                                       std::int64_t deadline_ns) noexcept {
     const std::int64_t until = std::min(again_ns, deadline_ns);
-    const bool is_batched = how == reading::batched;
-    if (until > from.now_ns()) {
-      const auto paused = from.pause(until);
+    const bool is_batched = pace == reading::batched;
+    if (until > port.now_ns()) {
+      const auto paused = port.pause(until);
       const bool woken = !paused && paused.error() == problem::cancelled;
       if (paused || woken) {  // a transport that broke is read to its end, like any other
-        const auto got = from.read({buffer_.get(), size}, at_once);
+        const auto got = port.read({buffer_.get(), size}, at_once);
         if (woken || is_batched || until == deadline_ns || !got || got->count > 0) return got;
-        if (how == reading::paced) pace_.nothing_complete();
+        if (pace == reading::paced) pace_.nothing_complete();
       }
     }
-    return from.read({buffer_.get(), size}, is_batched ? at_once : deadline_ns);
+    return port.read({buffer_.get(), size}, is_batched ? at_once : deadline_ns);
   }
 
   std::int64_t batch_ns_;

@@ -16,8 +16,8 @@ namespace {
 constexpr std::string_view please =
     " Please report it, with the file that g4-dump doctor --report writes.";
 
-std::string number_text(std::uint8_t number, const recognition& what) {
-  const model& read_as = *what.model;
+std::string number_text(std::uint8_t number, const recognition& recognition) {
+  const model& read_as = *recognition.model;
   std::string text = "The lidar reports the number " + std::to_string(number);
   const auto with_number = [number](const model& row) { return row.has_number(number); };
   const auto* const owner = std::ranges::find_if(models, with_number);
@@ -30,9 +30,9 @@ std::string number_text(std::uint8_t number, const recognition& what) {
     text += ".";
   }
   text.append(" It is read as ").append(article_of(read_as)).append(" ").append(read_as.name);
-  if (what.candidates.size() > 1 && what.by == known_by::samples)
-    text += ", and its packets may be those of " + model_words(what.candidates.subspan(1));
-  if (what.by == known_by::nothing) text += " until its packets show more";
+  if (recognition.candidates.size() > 1 && recognition.by == known_by::samples)
+    text += ", and its packets may be those of " + model_words(recognition.candidates.subspan(1));
+  if (recognition.by == known_by::nothing) text += " until its packets show more";
   text += ": compare the label of the lidar.";
   return owner == models.end() ? text.append(please) : text;
 }

@@ -8,9 +8,9 @@
 
 namespace g4lidar {
 
-result<std::optional<scan>> scan_loop::wait(lidar& from, lidar::milliseconds slice) {
-  if (!from.driver_) return moved_from();
-  lidar::driver& on = *from.driver_;
+result<std::optional<scan>> scan_loop::wait(lidar& device, lidar::milliseconds slice) {
+  if (!device.driver_) return moved_from();
+  lidar::driver& on = *device.driver_;
   const scan_source& source = on.source();
   const std::int64_t slice_ends_ns = deadline_after_ns(source, slice);
   const auto ends_ns = [&] {

@@ -32,10 +32,10 @@ struct scan_expectation {
 };
 
 /// Why a scan that is due has not come: packets of it have come in the last moments, or nothing.
-[[nodiscard]] inline error_detail why_not_yet(const point_pipeline& from,
+[[nodiscard]] inline error_detail why_not_yet(const point_pipeline& pipeline,
                                               std::int64_t now_ns) noexcept {
   constexpr std::int64_t longest_gap_ns = 200'000'000;  // with the largest batch
-  const std::int64_t last_ns = from.decoder().last_packet_ns();
+  const std::int64_t last_ns = pipeline.decoder().last_packet_ns();
   const bool is_moving = last_ns != 0 && now_ns - last_ns < longest_gap_ns;
   return is_moving ? error_detail::no_revolution : error_detail::usual;
 }
@@ -51,11 +51,11 @@ class scan_source {
     kept_recognition recognised;
   };
 
-  scan_source(parts& of, const lidar_options& options)
-      : connection_(of.link),
-        pipeline_(of.pipeline),
-        events_(of.events),
-        recognised_(of.recognised),
+  scan_source(parts& used, const lidar_options& options)
+      : connection_(used.link),
+        pipeline_(used.pipeline),
+        events_(used.events),
+        recognised_(used.recognised),
         receiver_(options.tuning.batch, *options.model) {}
   virtual ~scan_source() = default;
   scan_source(const scan_source&) = delete;
@@ -64,7 +64,7 @@ class scan_source {
   [[nodiscard]] virtual result<void> open() = 0;
   [[nodiscard]] virtual result<void> start() = 0;
   [[nodiscard]] virtual result<void> stop() = 0;
-  [[nodiscard]] virtual result<answer> ask(const request& wanted, while_scanning how) = 0;
+  [[nodiscard]] virtual result<answer> ask(const request& wanted, while_scanning if_scanning) = 0;
   /// From now on each packet is wanted when it is complete, not only whole scans. *Any thread.*
   void take_points() noexcept { takes_points_.store(true, std::memory_order_relaxed); }
   /// Releases the connection, and leaves the device as it is; `rests`: except a motor that the host's port
@@ -118,9 +118,9 @@ class scan_source {
   [[nodiscard]] virtual result<void> advance(std::int64_t deadline_ns) = 0;
 
   [[nodiscard]] std::int64_t now_ns() const noexcept { return connection_.now_ns(); }
-  void report(lidar_event::kind what, problem reason = problem::timeout) noexcept {
-    events_.put({what, reason, now_ns()});
-    if (what == lidar_event::kind::other_number) recognised_.record(connection_.from());
+  void report(lidar_event::kind kind, problem reason = problem::timeout) noexcept {
+    events_.put({kind, reason, now_ns()});
+    if (kind == lidar_event::kind::other_number) recognised_.record(connection_.port_connector());
   }
 
   /// The motor is started: the first scan comes when it has spun up.

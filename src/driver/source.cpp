@@ -74,8 +74,8 @@ search_options known_of(const lidar_options& options, const model* named) {
 /// To a source that states its model, or for which its user does.
 class stated_connector : public forwarding_connector {
  public:
-  stated_connector(std::unique_ptr<connector> inner, const model& which, known_by by)
-      : forwarding_connector(std::move(inner)), model_(&which), by_(by) {}
+  stated_connector(std::unique_ptr<connector> inner, const model& model, known_by basis)
+      : forwarding_connector(std::move(inner)), model_(&model), by_(basis) {}
 
   [[nodiscard]] connector_traits traits() const noexcept override {
     connector_traits known = forwarding_connector::traits();
@@ -95,8 +95,9 @@ class stated_connector : public forwarding_connector {
 /// To the port of a simulated lidar, which it owns.
 class simulated_connector final : public stated_connector {
  public:
-  simulated_connector(std::unique_ptr<connector> inner, sim::simulated_source of)
-      : stated_connector(std::move(inner), model_of(of), known_by::recording), of_(std::move(of)) {}
+  simulated_connector(std::unique_ptr<connector> inner, sim::simulated_source simulated)
+      : stated_connector(std::move(inner), model_of(simulated), known_by::recording),
+        of_(std::move(simulated)) {}
 
   [[nodiscard]] const sim::simulated_source& source() const noexcept { return of_; }
 
@@ -129,16 +130,16 @@ std::optional<error> problem_with_name(const lidar_options& options, const model
                             "the name");
 }
 
-/// `from`, read as the model of the options, or an error if it cannot be.
-result<std::unique_ptr<connector>> of_model(result<std::unique_ptr<connector>> from,
+/// `opened`, read as the model of the options, or an error if it cannot be.
+result<std::unique_ptr<connector>> of_model(result<std::unique_ptr<connector>> opened,
                                             const lidar_options& options) {
-  if (!from || options.model == nullptr) return from;
-  const recognition stated = (*from)->traits().recognised;
+  if (!opened || options.model == nullptr) return opened;
+  const recognition stated = (*opened)->traits().recognised;
   if (const auto wrong = problem_with_model(options, stated, "the source")) {
     return tl::unexpected(*wrong);
   }
-  if (*stated.model == *options.model) return from;
-  return std::make_unique<stated_connector>(*std::move(from), *options.model, known_by::user);
+  if (*stated.model == *options.model) return opened;
+  return std::make_unique<stated_connector>(*std::move(opened), *options.model, known_by::user);
 }
 
 }  // namespace

@@ -25,16 +25,16 @@ namespace g4lidar {
 /// *Single thread, never allocates.*
 class timed_decoder {
  public:
-  explicit timed_decoder(std::int64_t transport_delay_ns, const model& which = g4_model) noexcept
+  explicit timed_decoder(std::int64_t transport_delay_ns, const model& model = g4_model) noexcept
       : transport_delay_ns_(transport_delay_ns) {
-    become(which);
+    become(model);
   }
 
-  /// The following packets are of a lidar like `which`.
-  void become(const model& which) noexcept {
-    which_ = &which;
-    shortest_mm_ = which.range.min_mm;
-    to_points_ = bulk::kernels_of(best_instruction_set(), which.samples).to_points;
+  /// The following packets are of a lidar like `model`.
+  void become(const model& model) noexcept {
+    which_ = &model;
+    shortest_mm_ = model.range.min_mm;
+    to_points_ = bulk::kernels_of(best_instruction_set(), model.samples).to_points;
   }
 
   /// See become().

@@ -18,8 +18,8 @@ namespace g4lidar {
 class connection {
  public:
   /// `device` is the name while there is no transport.
-  connection(std::unique_ptr<connector> from, std::string_view device)
-      : connector_(std::move(from)), device_(device) {}
+  connection(std::unique_ptr<connector> made, std::string_view device)
+      : connector_(std::move(made)), device_(device) {}
 
   /// Opens a transport instead of the previous one, if the connector has one.
   result<void> open();
@@ -27,9 +27,9 @@ class connection {
   [[nodiscard]] bool is_open() const noexcept { return transport_ != nullptr; }
 
   /// The open transport.
-  [[nodiscard]] transport& on() noexcept { return *transport_; }
-  [[nodiscard]] const transport& on() const noexcept { return *transport_; }
-  [[nodiscard]] connector& from() noexcept { return *connector_; }
+  [[nodiscard]] transport& port() noexcept { return *transport_; }
+  [[nodiscard]] const transport& port() const noexcept { return *transport_; }
+  [[nodiscard]] connector& port_connector() noexcept { return *connector_; }
   /// Sends all of a command. A wake-up does not interrupt it: half a command would be worse than a
   /// late one.
   [[nodiscard]] result<void> send(bytes command) noexcept;

@@ -23,17 +23,17 @@ class device_link {
   /// algorithm, and an acknowledgement that is delayed), and a wireless link for longer.
   static constexpr std::int64_t network_factor = 8;
 
-  /// `input` parses the bytes of `on`, which may be null before follow(). Both must outlive this. `listens`: nothing is
+  /// `input` parses the bytes of `port`, which may be null before follow(). Both must outlive this. `listens`: nothing is
   /// sent, as to a one-way lidar.
-  explicit device_link(event_reader& input, transport* on, const session_times& times = {},
+  explicit device_link(event_reader& input, transport* port, const session_times& times = {},
                        std::int64_t cut_off_after_ns = usual_cut_off_ns,
-                       const model& which = g4_model, bool listens = false) noexcept
+                       const model& model = g4_model, bool listens = false) noexcept
       : input_(input),
-        on_(on),
-        session_(times, which),
+        on_(port),
+        session_(times, model),
         cut_off_after_ns_(cut_off_after_ns),
-        listens_(listens || which.link == link_kind::one_way),
-        is_bridged_(on != nullptr && is_bridge(on->name())) {}
+        listens_(listens || model.link == link_kind::one_way),
+        is_bridged_(port != nullptr && is_bridge(port->name())) {}
 
   /// Another transport: nothing is known about the device.
   void follow(transport& on) noexcept {

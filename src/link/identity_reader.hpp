@@ -26,10 +26,10 @@ namespace g4lidar {
 class identity_reader {
  public:
   /// `reads_ct`: CT bytes are read, too; a two-way lidar answers instead.
-  explicit identity_reader(const model& which, bool reads_ct) noexcept
-      : which_(&which), reads_ct_(reads_ct) {}
-  explicit identity_reader(const model& which) noexcept
-      : identity_reader(which, which.link == link_kind::one_way) {}
+  explicit identity_reader(const model& model, bool reads_ct) noexcept
+      : which_(&model), reads_ct_(reads_ct) {}
+  explicit identity_reader(const model& model) noexcept
+      : identity_reader(model, model.link == link_kind::one_way) {}
 
   void take(const event& found) noexcept {
     if (const auto* const packet = std::get_if<packet_view>(&found)) {

@@ -12,7 +12,7 @@
 namespace g4lidar {
 
 std::size_t fill_time_grid(std::span<const point> points, std::int64_t duration_ns,
-                           std::span<float> ranges_m, grid_options how,
+                           std::span<float> ranges_m, grid_options options,
                            std::span<float> intensities) noexcept {
   // The direction at the beginning, seen from each return: the corrections differ by some degrees.
   const std::int64_t begin_ns = points.empty() ? 0 : points.front().time_ns;
@@ -40,8 +40,8 @@ std::size_t fill_time_grid(std::span<const point> points, std::int64_t duration_
     const std::int64_t since_ns = detail::saturating_sub(p.time_ns, begin_ns);
     return duration_ns <= 0 || std::abs(part - part_of(since_ns)) < 0.5F;
   };
-  how.to = frame::vendor;
-  fill_grid(points, ranges_m, how, is_in_time, intensities);
+  options.to = frame::vendor;
+  fill_grid(points, ranges_m, options, is_in_time, intensities);
   return first_bin;
 }
 

@@ -158,13 +158,13 @@ message_schema tf_message_schema() noexcept {
           text<transforms, transform_stamped, header, time, transform, vector3, quaternion>};
 }
 
-std::span<const cloud_field> cloud_fields(const model& of) noexcept {
-  const std::size_t count = all_cloud_fields.size() - (has_intensity(of) ? 0 : 1);
+std::span<const cloud_field> cloud_fields(const model& model) noexcept {
+  const std::size_t count = all_cloud_fields.size() - (has_intensity(model) ? 0 : 1);
   return std::span(all_cloud_fields).first(count);
 }
 
-std::uint32_t cloud_point_size(const model& of) noexcept {
-  return cloud_fields(of).back().offset + 4;
+std::uint32_t cloud_point_size(const model& model) noexcept {
+  return cloud_fields(model).back().offset + 4;
 }
 
 std::int64_t cloud_time_ns(std::span<const point> points) noexcept {

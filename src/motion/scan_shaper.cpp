@@ -62,14 +62,14 @@ std::size_t scan_shaper::count_outside() const noexcept {
   }));
 }
 
-scan scan_shaper::make(product& what, filtering* filtered) {
+scan scan_shaper::make(product& wanted, filtering* filtered) {
   scan made = source_;
-  made.points = points_of(what, filtered);
+  made.points = points_of(wanted, filtered);
   return made;
 }
 
-std::span<const point> scan_shaper::points_of(product& what, filtering* filtered) {
-  if (what.points) return *what.points;
+std::span<const point> scan_shaper::points_of(product& wanted, filtering* filtered) {
+  if (wanted.points) return *wanted.points;
   if (needs_marks_) {
     if (!options_.marks.near) marked_.assign(source_.begin(), source_.end());
     options_.marks.mark_by_neighbours(marked_,
@@ -77,10 +77,11 @@ std::span<const point> scan_shaper::points_of(product& what, filtering* filtered
     source_.points = marked_;
     needs_marks_ = false;
   }
-  if (options_.filter.keeps_everything() && !deskews()) return what.points.emplace(source_.points);
-  if (what.memory.size() < source_.size()) what.memory.resize(source_.size());
-  const std::span<point> made = filtered(source_.points, options_.filter, what.memory);
-  what.points = made;
+  if (options_.filter.keeps_everything() && !deskews())
+    return wanted.points.emplace(source_.points);
+  if (wanted.memory.size() < source_.size()) wanted.memory.resize(source_.size());
+  const std::span<point> made = filtered(source_.points, options_.filter, wanted.memory);
+  wanted.points = made;
   if (!deskews()) return made;
   const std::int64_t reference_ns = source_.time_ns();
   if (twist_) {

@@ -53,18 +53,18 @@ struct mark_limit {
   void (*take)(mark_limits& into, double value);
 };
 constexpr std::array<mark_limit, 4> limits_of_speckle{{
-    {1, max_window, true, [](auto& of, double n) { of.speckle->window = std::size_t(n); }},
-    {1, 2 * max_window, true, [](auto& of, double n) { of.speckle->count = std::size_t(n); }},
-    {0, 100, false, [](auto& of, double m) { of.speckle->near_m = float(m); }},
-    {0, 1, false, [](auto& of, double ratio) { of.speckle->near_ratio = float(ratio); }},
+    {1, max_window, true, [](auto& marks, double n) { marks.speckle->window = std::size_t(n); }},
+    {1, 2 * max_window, true, [](auto& marks, double n) { marks.speckle->count = std::size_t(n); }},
+    {0, 100, false, [](auto& marks, double m) { marks.speckle->near_m = float(m); }},
+    {0, 1, false, [](auto& marks, double ratio) { marks.speckle->near_ratio = float(ratio); }},
 }};
 constexpr std::array<mark_limit, 2> limits_of_edges{{
-    {1, max_window, true, [](auto& of, double n) { of.edges->window = std::size_t(n); }},
-    {0.1, 45, false, [](auto& of, double deg) { of.edges->least_angle_deg = float(deg); }},
+    {1, max_window, true, [](auto& marks, double n) { marks.edges->window = std::size_t(n); }},
+    {0.1, 45, false, [](auto& marks, double deg) { marks.edges->least_angle_deg = float(deg); }},
 }};
 constexpr std::array<mark_limit, 2> limits_of_near{{
-    {0.01, 16, false, [](auto& of, double m) { of.near->shortest_mm = float(m * 1e3); }},
-    {0, 1e9, true, [](auto& of, double n) { of.near->revolutions = std::uint32_t(n); }},
+    {0.01, 16, false, [](auto& marks, double m) { marks.near->shortest_mm = float(m * 1e3); }},
+    {0, 1e9, true, [](auto& marks, double n) { marks.near->revolutions = std::uint32_t(n); }},
 }};
 
 /// "off", "on" or nothing, or limits: "window=2,count=1". Returns why not, or nothing.

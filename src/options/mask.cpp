@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "g4lidar/error.hpp"
+#include "text_words.hpp"
 #include "transport/text_file.hpp"
-#include "words.hpp"
 
 namespace g4lidar {
 namespace {

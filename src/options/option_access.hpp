@@ -28,7 +28,7 @@ struct option_access {
 
 /// The value with the type of the parameter; why not, with its name. *Allocates.*
 [[nodiscard]] text_result<parameter_value> value_for(const parameter& to,
-                                                     const parameter_value& from);
+                                                     const parameter_value& value);
 /// As a person writes it. *Allocates.*
 [[nodiscard]] std::string word_of(const parameter_value& value);
 

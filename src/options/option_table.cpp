@@ -65,7 +65,7 @@ constexpr option_access member{
     [](const options& a, const options& b) {
       return !(part<Members...>(a) == part<Members...>(b));
     },
-    [](options& to, const options& from) { part<Members...>(to) = part<Members...>(from); },
+    [](options& to, const options& given) { part<Members...>(to) = part<Members...>(given); },
     [](options& into, const parameter_value& value) {
       if constexpr (requires { take(part<Members...>(into), value); })
         take(part<Members...>(into), value);
@@ -123,23 +123,23 @@ constexpr option_access pace_access =
     changed(member<&options::tuning, &lidar_tuning::pace>, set_pace,
             [](const options& of) { return static_cast<std::int64_t>(of.tuning.pace); });
 
-/// `with`: the parts of a row that few have.
+/// `details`: the parts of a row that few have.
 constexpr parameter row(literal name, std::uint8_t type, parameter_kind kind, std::uint8_t doors,
-                        literal about, parameter with = {}, std::uint8_t users = any,
+                        literal about, parameter details = {}, std::uint8_t users = any,
                         const option_access* access = nullptr) {
-  with.name = name;
-  with.type = type;
-  with.kind = kind;
-  with.doors = doors;
-  with.text = about;
-  with.users = users;
-  with.access = access;
-  return with;
+  details.name = name;
+  details.type = type;
+  details.kind = kind;
+  details.doors = doors;
+  details.text = about;
+  details.users = users;
+  details.access = access;
+  return details;
 }
 constexpr parameter opening(literal name, std::uint8_t type, std::uint8_t users, std::uint8_t doors,
                             const option_access* access, literal about,
-                            const parameter& with = {}) {
-  return row(name, type, read_only, doors, about, with, users, access);
+                            const parameter& details = {}) {
+  return row(name, type, read_only, doors, about, details, users, access);
 }
 constexpr std::uint8_t programs = tool | node;
 constexpr std::uint8_t all_doors = programs | python;

@@ -57,10 +57,10 @@ std::string word_of(const parameter_value& value) {
   return text != nullptr ? *text : std::string();
 }
 
-text_result<parameter_value> value_for(const parameter& to, const parameter_value& from) {
+text_result<parameter_value> value_for(const parameter& to, const parameter_value& value) {
   constexpr std::array<std::string_view, 5> types{"not set", "a bool", "an integer", "a double",
                                                   "a string"};
-  parameter_value made = converted(from, to.type);
+  parameter_value made = converted(value, to.type);
   if (made.index() != to.type)
     return tl::unexpected(std::string(to.name) + ": it is " + std::string(types.at(to.type)));
   const auto* const text = std::get_if<std::string>(&made);
@@ -85,41 +85,42 @@ std::string flag_of(const parameter& of) {
   return made;
 }
 
-parameter_limits limits_of(const parameter& of, const model* which) {
-  if (of.setting == nullptr) {
-    if (of.name == "model") return {model_words(), {}};
-    if (of.words.empty() || of.type != is_string) {
-      const bool has_form = of.form.find_first_of(":,") != std::string_view::npos;
-      return {has_form ? std::string(of.form) : "", of.range};
+parameter_limits limits_of(const parameter& parameter, const model* model) {
+  if (parameter.setting == nullptr) {
+    if (parameter.name == "model") return {model_words(), {}};
+    if (parameter.words.empty() || parameter.type != is_string) {
+      const bool has_form = parameter.form.find_first_of(":,") != std::string_view::npos;
+      return {has_form ? std::string(parameter.form) : "", parameter.range};
     }
-    if (of.form.empty()) return {list_of(of.words), {}};
-    return {"off, on, or limits: " +
-            list_of(of.words, [](std::string_view each) { return std::string(each) + "=N"; })};
+    if (parameter.form.empty()) return {list_of(parameter.words), {}};
+    return {"off, on, or limits: " + list_of(parameter.words, [](std::string_view each) {
+              return std::string(each) + "=N";
+            })};
   }
-  parameter_limits made = limits_of(*of.setting);
-  if (which == nullptr) return made;
-  if (!has_request(*which, of.setting->change)) {
+  parameter_limits made = limits_of(*parameter.setting);
+  if (model == nullptr) return made;
+  if (!has_request(*model, parameter.setting->change)) {
     made = {"this model does not have it", {}};
-    if (of.setting->change == request_kind::set_scan_frequency)
-      made.constraints += "; its speed: " + speed_without_commands(*which);
-  } else if (of.setting->type == setting_type::decimal) {
-    made.range = {which->frequency.min_dhz / 10.0, which->frequency.max_dhz / 10.0, made.range[2]};
-  } else if (of.setting->type == setting_type::whole) {
-    made.constraints = list_of(std::span(which->rates.entries).first(rate_count(*which)),
+    if (parameter.setting->change == request_kind::set_scan_frequency)
+      made.constraints += "; its speed: " + speed_without_commands(*model);
+  } else if (parameter.setting->type == setting_type::decimal) {
+    made.range = {model->frequency.min_dhz / 10.0, model->frequency.max_dhz / 10.0, made.range[2]};
+  } else if (parameter.setting->type == setting_type::whole) {
+    made.constraints = list_of(std::span(model->rates.entries).first(rate_count(*model)),
                                [](const auto& rate) { return std::to_string(rate.hz); });
   }
   return made;
 }
 
-parameter_value converted(const parameter_value& from, std::uint8_t type) {
-  if (type == is_string) return text_of(from);
-  if (from.index() == type) return from;
+parameter_value converted(const parameter_value& value, std::uint8_t type) {
+  if (type == is_string) return text_of(value);
+  if (value.index() == type) return value;
   if (type == is_bool) {
-    const std::string word = word_of(text_of(from));
+    const std::string word = word_of(text_of(value));
     if (word != "on" && word != "off") return {};
     return word == "on";
   }
-  const auto number = number_of(from);
+  const auto number = number_of(value);
   if (!number) return {};
   if (type == is_double) return *number;
   constexpr double largest = 1e15;  // each whole number below is a double
@@ -139,20 +140,21 @@ parameter_value value_of(const answer& given) {
   return word == nullptr ? parameter_value() : std::string(word->word);
 }
 
-result<answer> answer_of(const setting_info& of, const parameter_value& wanted,
-                         const model* which) {
-  return value_in(of, word_of(wanted), which);
+result<answer> answer_of(const setting_info& setting, const parameter_value& wanted,
+                         const model* model) {
+  return value_in(setting, word_of(wanted), model);
 }
 
-std::string set_option(lidar_options& into, const parameter& which, const parameter_value& value) {
-  const auto made = converted(value, which.type);
+std::string set_option(lidar_options& into, const parameter& parameter,
+                       const parameter_value& value) {
+  const auto made = converted(value, parameter.type);
   const auto number = number_of(made);
-  const bool has_range = which.range[0] < which.range[1] && which.type != is_string;
-  if (has_range && !(number && which.range[0] <= *number && *number <= which.range[1]))
-    return not_in_range(word_of(value), which.range[0], which.range[1]);
-  if (which.access == nullptr || made.index() != which.type)
-    return in_quotes(word_of(value)) + " is no value of " + std::string(which.name);
-  return which.access->set(into, made);
+  const bool has_range = parameter.range[0] < parameter.range[1] && parameter.type != is_string;
+  if (has_range && !(number && parameter.range[0] <= *number && *number <= parameter.range[1]))
+    return not_in_range(word_of(value), parameter.range[0], parameter.range[1]);
+  if (parameter.access == nullptr || made.index() != parameter.type)
+    return in_quotes(word_of(value)) + " is no value of " + std::string(parameter.name);
+  return parameter.access->set(into, made);
 }
 
 }  // namespace g4lidar

@@ -25,40 +25,42 @@ const setting_info* setting_of(const answer& value) noexcept {
   return at == setting_rows.end() ? nullptr : at;
 }
 
-std::optional<answer> value_of(const setting_info& of, std::int32_t number) noexcept {
-  const auto at = std::ranges::find(of.values, number, &setting_value::number);
-  if (at != of.values.end()) return at->value;
-  if (!of.values.empty() || number < least_of_all_chz || number > most_of_all_chz) {
+std::optional<answer> value_of(const setting_info& setting, std::int32_t number) noexcept {
+  const auto at = std::ranges::find(setting.values, number, &setting_value::number);
+  if (at != setting.values.end()) return at->value;
+  if (!setting.values.empty() || number < least_of_all_chz || number > most_of_all_chz) {
     return std::nullopt;
   }
   return scan_frequency{static_cast<std::uint16_t>(number)};
 }
 
-result<answer> value_in(const setting_info& of, std::string_view text, const model* which) {
+result<answer> value_in(const setting_info& setting, std::string_view text, const model* model) {
   const std::string given = in_quotes(text);
   // What the model does not have at all is refused by the lidar.
-  const bool is_known = which != nullptr && has_request(*which, of.change);
+  const bool is_known = model != nullptr && has_request(*model, setting.change);
   const auto refused = [&](std::string why, bool is_of_model = true) {
-    if (!of.unit.empty()) why.append(" ").append(of.unit);
+    if (!setting.unit.empty()) why.append(" ").append(setting.unit);
     if (is_known && is_of_model) {
-      why.append(" of ").append(article_of(*which)).append(" ").append(which->name);
+      why.append(" of ").append(article_of(*model)).append(" ").append(model->name);
     }
-    return failure(task::configuring, problem::bad_option, std::string(of.name) + ": " + why);
+    return failure(task::configuring, problem::bad_option, std::string(setting.name) + ": " + why);
   };
-  if (of.type == setting_type::decimal) {
-    const double least = is_known ? which->frequency.min_dhz / 10.0 : of.least / 100.0;
-    const double most = is_known ? which->frequency.max_dhz / 10.0 : of.most / 100.0;
+  if (setting.type == setting_type::decimal) {
+    const double least = is_known ? model->frequency.min_dhz / 10.0 : setting.least / 100.0;
+    const double most = is_known ? model->frequency.max_dhz / 10.0 : setting.most / 100.0;
     const auto number = number_in(text, least, most);
     if (!number) return refused(not_in_range(text, least, most));
-    const double steps = *number * 100.0 / of.step;
-    const auto made = value_of(of, static_cast<std::int32_t>(std::lround(steps)) * of.step);
+    const double steps = *number * 100.0 / setting.step;
+    const auto made =
+        value_of(setting, static_cast<std::int32_t>(std::lround(steps)) * setting.step);
     if (made && std::abs(steps - std::round(steps)) <= 1e-6) return *made;
-    return refused(given + " is not a multiple of " + text_of_number(of.step / 100.0), false);
+    return refused(given + " is not a multiple of " + text_of_number(setting.step / 100.0), false);
   }
   std::vector<std::string_view> possible;
-  for (const setting_value& each : of.values) {
-    if (is_known && !is_possible(change_to(each.value), *which)) continue;
-    const bool is_number = of.type == setting_type::whole && text == std::to_string(each.number);
+  for (const setting_value& each : setting.values) {
+    if (is_known && !is_possible(change_to(each.value), *model)) continue;
+    const bool is_number =
+        setting.type == setting_type::whole && text == std::to_string(each.number);
     if (is_number || text == each.word) return each.value;
     possible.push_back(each.word);
   }
@@ -92,12 +94,12 @@ request change_to(const answer& value) noexcept {
       value);
 }
 
-std::string speed_without_commands(const model& which) {
-  return std::string(std::string_view(error_context("").add_speed(which, "")));
+std::string speed_without_commands(const model& model) {
+  return std::string(std::string_view(error_context("").add_speed(model, "")));
 }
 
-std::string ways_to_set(const model& which) {
-  const std::string all(std::string_view(error_context("").add_ways(which)));
+std::string ways_to_set(const model& model) {
+  const std::string all(std::string_view(error_context("").add_ways(model)));
   return all.substr(2, all.size() - 3);  // " (...)"
 }
 

@@ -18,21 +18,21 @@ void append(std::vector<std::uint8_t>& out, bytes data) {
   out.insert(out.end(), data.begin(), data.end());
 }
 
-/// The content of an answer to 93 of a lidar like `which`: the nearest number of its unit.
-std::int32_t reply_of(zero_angle angle, const model& which) noexcept {
-  const int hundredths = angle.cdeg * which.zero_angle_divisor;
+/// The content of an answer to 93 of a lidar like `model`: the nearest number of its unit.
+std::int32_t reply_of(zero_angle angle, const model& model) noexcept {
+  const int hundredths = angle.cdeg * model.zero_angle_divisor;
   return (hundredths + (hundredths < 0 ? -50 : 50)) / 100;
 }
 
 }  // namespace
 
-raw_copy::raw_copy(const model& which, const device_information& who)
-    : which_(&which),
-      parser_(which.samples),
-      source_{.like = &with_firmware(which, who), .who = who},
-      reader_{.like = &which} {}
+raw_copy::raw_copy(const model& model, const device_information& information)
+    : which_(&model),
+      parser_(model.samples),
+      source_{.like = &with_firmware(model, information), .who = information},
+      reader_{.like = &model} {}
 
-void raw_copy::knowledge::take(const event& found, const model& named) noexcept {
+void raw_copy::known_lidar::take(const event& found, const model& named) noexcept {
   const auto* const heard = std::get_if<response_view>(&found);
   if (heard == nullptr) return replies.pass();
   const auto stated = replies.take(*heard, *like);
@@ -40,7 +40,7 @@ void raw_copy::knowledge::take(const event& found, const model& named) noexcept 
     who = *stated.firmware;
     like = &with_firmware(named, who);
   }
-  if (stated.zero) zero.set(*stated.zero, zero_offset::known_by::device);
+  if (stated.zero) zero.set(*stated.zero, zero_offset::stated_by::device);
 }
 
 void raw_copy::take(const event& found, bool is_wanted) {
@@ -122,7 +122,7 @@ void raw_copy::take(const recorded_item& item, bool is_wanted, std::vector<std::
       return source_.replies.sent(item.data);
     case recorded_item::kind::other: {
       const recorded_event& what = item.other;
-      if (what.zero) source_.zero.set(*what.zero, zero_offset::known_by::recording);
+      if (what.zero) source_.zero.set(*what.zero, zero_offset::stated_by::recording);
       using enum recorded_event::kind;
       begins_within_ = begins_within_ || (what.what == state && what.delivers && !has_begun_);
       const bool ends = what.what == cut || what.what == gap || what.what == closed;

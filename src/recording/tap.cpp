@@ -19,10 +19,10 @@ template <class Writer>
 class recorded_transport final : public forwarding_transport {
  public:
   /// `played`: the events of a recording; null for a device or a file of bytes.
-  recorded_transport(std::unique_ptr<transport> port, const connector& from,
+  recorded_transport(std::unique_ptr<transport> port, const connector& connector,
                      const recorded_event_source* played, Writer& into) noexcept
       : forwarding_transport(std::move(port)),
-        from_(&from),
+        from_(&connector),
         is_played_(played != nullptr),
         into_(&into) {
     follow_wall_clock();
@@ -91,8 +91,8 @@ class recorded_connector final : public forwarding_connector,
                                  public recording_hook,
                                  private recorded_event_source {
  public:
-  recorded_connector(std::unique_ptr<connector> from, Writer& into) noexcept
-      : forwarding_connector(std::move(from)),
+  recorded_connector(std::unique_ptr<connector> opener, Writer& into) noexcept
+      : forwarding_connector(std::move(opener)),
         into_(&into),
         inner_hook_(recording_hook_of(inner())),
         played_(inner_hook_ != nullptr ? inner_hook_->events() : nullptr) {
@@ -167,32 +167,33 @@ recording_hook* recording_hook_of(connector& from) noexcept {
   return nullptr;
 }
 
-result<std::unique_ptr<connector>> recorded(std::unique_ptr<connector> from,
+result<std::unique_ptr<connector>> recorded(std::unique_ptr<connector> connector,
                                             recording_writer& into) {
   using writer = recording_writer::file_writer;
-  if (!into.made_) return from;  // a moved-from writer records nothing
-  const played_file* const played = file_of(*from);
+  if (!into.made_) return connector;  // a moved-from writer records nothing
+  const played_file* const played = file_of(*connector);
   if (played != nullptr &&
       are_one_file(std::string(played->items().path()), into.made_->place().path())) {
     return failure(task::opening, problem::bad_option,
                    "the file of the recording is also its source");
   }
-  const connector_traits behind = from->traits();
+  const connector_traits behind = connector->traits();
   const model* const stated =
       behind.begun_as != nullptr ? behind.begun_as : behind.recognised.model;
   if (stated != nullptr) {
     if (auto taken = into.made_->take_model(*stated); !taken) return tl::unexpected(taken.error());
   }
-  return std::make_unique<recorded_connector<writer>>(std::move(from), *into.made_);
+  return std::make_unique<recorded_connector<writer>>(std::move(connector), *into.made_);
 }
 
 /// What is recorded goes to the writer, if it is on. The state of the connection is known always.
 class recording_switch::observer {
  public:
-  void put_bytes(direction way, bytes data, std::int64_t time_ns) noexcept {
+  void put_bytes(direction flow, bytes data, std::int64_t time_ns) noexcept {
     latest_ns_ = time_ns;
     if (to_ == nullptr) return;
-    way == direction::from_device ? to_->from_device(data, time_ns) : to_->to_device(data, time_ns);
+    flow == direction::from_device ? to_->from_device(data, time_ns)
+                                   : to_->to_device(data, time_ns);
   }
   void event(const recorded_event& what) noexcept {
     latest_ns_ = what.time_ns;

@@ -8,8 +8,8 @@
 #include "service/service_core.hpp"
 
 namespace g4lidar {
-lidar_channel::lidar_channel(service_lidar what, std::size_t index, service_core& core)
-    : about_(std::move(what)),
+lidar_channel::lidar_channel(service_lidar lidar, std::size_t index, service_core& core)
+    : about_(std::move(lidar)),
       index_(index),
       core_(core),
       is_file_(names_file(about_.options.device)),

@@ -26,7 +26,7 @@ class service_core;
 class lidar_channel final : private reader_listener {
  public:
   /// Loads the odometry of a recording, if it is needed. `core` outlives it.
-  lidar_channel(service_lidar what, std::size_t index, service_core& core);
+  lidar_channel(service_lidar lidar, std::size_t index, service_core& core);
 
   [[nodiscard]] background_reader& reader() noexcept { return reader_; }
   [[nodiscard]] const background_reader& reader() const noexcept { return reader_; }

@@ -11,9 +11,9 @@ constexpr int scans_that_decide = 5;
 
 }  // namespace
 
-motion_watch::motion_watch(deskewing how, const std::string& where)
+motion_watch::motion_watch(deskewing deskew, const std::string& where)
     : hint_("points are not deskewed: " +
-            (how == deskewing::by_scans
+            (deskew == deskewing::by_scans
                  ? "the scans do not show the motion"
                  : "there is no odometry " + where + " for the times of the scans")) {}
 

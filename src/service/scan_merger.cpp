@@ -9,8 +9,9 @@
 
 namespace g4lidar {
 
-scan_merger::scan_merger(deskewing how, const std::vector<lidar>& lidars) : deskew_(how) {
-  for (const lidar& each : lidars) {
+scan_merger::scan_merger(deskewing deskewing, const std::vector<merged_lidar>& lidars)
+    : deskew_(deskewing) {
+  for (const merged_lidar& each : lidars) {
     part& made = parts_.emplace_back();
     made.name = each.name;
     made.place = each.place;
@@ -87,13 +88,13 @@ robot_motion scan_merger::motion_of_robot(const part& leader, const scan_shaper&
   return {.twist = seen_from(inverse(leader.place.pose), twist), .path = {}};
 }
 
-merged scan_merger::merged_points(std::vector<point> part::* which, std::int64_t reference_ns,
+merged scan_merger::merged_points(std::vector<point> part::* member, std::int64_t reference_ns,
                                   const robot_motion& moved, std::vector<point>& out) const {
   std::vector<mounted_scan> lidars;
   std::size_t count = 0;
   for (const part& each : parts_) {
-    lidars.push_back({each.*which, each.place, each.model->turn_deg});
-    count += (each.*which).size();
+    lidars.push_back({each.*member, each.place, each.model->turn_deg});
+    count += (each.*member).size();
   }
   out.resize(count);
   const merged all = moved.twist ? merge_scans(lidars, *moved.twist, reference_ns, out)

@@ -43,14 +43,14 @@ struct merged_scan {
 /// but for status().
 class scan_merger {
  public:
-  struct lidar {
+  struct merged_lidar {
     std::string name;
     mounting place;
   };
   /// The poses of the robot until a time; empty: they are not known.
   using path_until = std::function<std::span<const stamped_pose>(std::int64_t)>;
 
-  explicit scan_merger(deskewing how, const std::vector<lidar>& lidars);
+  explicit scan_merger(deskewing deskewing, const std::vector<merged_lidar>& lidars);
 
   /// The newest scan of a lidar, by a scan_shaper with `for_merging`, whose first point is of `first_ns`. The joined ones,
   /// if they are.
@@ -77,7 +77,7 @@ class scan_merger {
   /// What measures merged scans: see merged_scan.
   [[nodiscard]] const g4lidar::model& merged_model();
   /// Such points of all parts, as one scan at `reference_ns`.
-  [[nodiscard]] merged merged_points(std::vector<point> part::* which, std::int64_t reference_ns,
+  [[nodiscard]] merged merged_points(std::vector<point> part::* member, std::int64_t reference_ns,
                                      const robot_motion& moved, std::vector<point>& out) const;
 
   deskewing deskew_;

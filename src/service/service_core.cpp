@@ -22,7 +22,7 @@ service_core::service_core(service_options options, const std::vector<service_li
   deskewing deskew = options_.deskew;
   if (lidars.size() > 1 || options_.merges) {
     deskew = merged_deskewing(options_, lidars.front());
-    std::vector<scan_merger::lidar> parts;
+    std::vector<scan_merger::merged_lidar> parts;
     parts.reserve(lidars.size());
     for (const service_lidar& each : lidars)
       parts.push_back({each.name, each.mount.value_or(mounting{})});

@@ -110,8 +110,8 @@ void sink_queue::on_motion(bool is_known, const std::string& why) {
   add({kind::other, 0, [=](service_sink& to) { to.on_motion(is_known, why); }});
 }
 
-void sink_queue::on_event(std::size_t lidar, const lidar_event& what, std::int64_t stamp_ns) {
-  add({kind::other, lidar, [=](service_sink& to) { to.on_event(lidar, what, stamp_ns); }});
+void sink_queue::on_event(std::size_t lidar, const lidar_event& event, std::int64_t stamp_ns) {
+  add({kind::other, lidar, [=](service_sink& to) { to.on_event(lidar, event, stamp_ns); }});
 }
 
 void sink_queue::on_state(std::size_t lidar, reader_state state, const std::optional<error>& why) {

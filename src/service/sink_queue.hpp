@@ -34,7 +34,7 @@ class sink_queue final : public service_sink {
   void on_odometry(const stamped_odometry& now, std::int64_t stamp_ns) override;
   void on_time(std::size_t lidar, std::int64_t stamp_ns) override;
   void on_motion(bool is_known, const std::string& why) override;
-  void on_event(std::size_t lidar, const lidar_event& what, std::int64_t stamp_ns) override;
+  void on_event(std::size_t lidar, const lidar_event& event, std::int64_t stamp_ns) override;
   void on_state(std::size_t lidar, reader_state state, const std::optional<error>& why) override;
   void on_values(std::size_t lidar, const std::string& refused) override;
 

@@ -24,9 +24,9 @@ enum class purpose : std::uint64_t {
   faults = 100  // plus the index of the fault
 };
 
-[[nodiscard]] constexpr random_stream stream_for(std::uint64_t seed, purpose what,
-                                                 std::uint64_t which = 0) noexcept {
-  return random_stream(seed, static_cast<std::uint64_t>(what) + which);
+[[nodiscard]] constexpr random_stream stream_for(std::uint64_t seed, purpose purpose,
+                                                 std::uint64_t index = 0) noexcept {
+  return random_stream(seed, static_cast<std::uint64_t>(purpose) + index);
 }
 
 }  // namespace g4lidar::sim

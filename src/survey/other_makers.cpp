@@ -34,8 +34,8 @@ std::uint8_t sum_of(bytes data) noexcept {
 }
 
 /// Big-endian, as in frames of a Delta.
-std::size_t load_upper_first(bytes data, std::size_t at) noexcept {
-  return data[at] * 256U + data[at + 1];
+std::size_t load_upper_first(bytes data, std::size_t offset) noexcept {
+  return data[offset] * 256U + data[offset + 1];
 }
 
 std::size_t ldrobot(bytes data) noexcept {

@@ -31,25 +31,25 @@ void return_map::mark(degree_counts& counts, double from_deg, double to_deg) noe
   }
 }
 
-void return_map::take(packet_view packet, const sample_format& of) noexcept {
+void return_map::take(packet_view packet, const sample_format& format) noexcept {
   if (packet.is_suspect()) return;
   if (packet.is_zero()) {
     ++revolutions_;
     is_looking_ = !is_thinned_ || revolutions_ == 1 || revolutions_ % 64 == 0;
   }
   if (!is_looking_) return;
-  switch (of.layout) {
+  switch (format.layout) {
     case sample_layout::quarter_mm:
-      return take_as<sample_layout::quarter_mm>(packet, of.correction);
+      return take_as<sample_layout::quarter_mm>(packet, format.correction);
     case sample_layout::half_mm:
-      return take_as<sample_layout::half_mm>(packet, of.correction);
+      return take_as<sample_layout::half_mm>(packet, format.correction);
     case sample_layout::whole_mm:
     case sample_layout::intensity_16:
-      return take_as<sample_layout::whole_mm>(packet, of.correction);
+      return take_as<sample_layout::whole_mm>(packet, format.correction);
     case sample_layout::flagged_mm:
     case sample_layout::intensity_10:
     case sample_layout::intensity_8:
-      return take_as<sample_layout::flagged_mm>(packet, of.correction);
+      return take_as<sample_layout::flagged_mm>(packet, format.correction);
   }
 }
 

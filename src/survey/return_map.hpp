@@ -26,7 +26,7 @@ class return_map {
   explicit return_map(bool is_thinned) noexcept : is_thinned_(is_thinned) {}
 
   /// Adds a packet of such samples. A suspect packet adds nothing.
-  void take(packet_view packet, const sample_format& of) noexcept;
+  void take(packet_view packet, const sample_format& format) noexcept;
   /// Adds what another one has counted.
   void add(const return_map& other) noexcept;
 

@@ -187,9 +187,9 @@ tl::unexpected<error> fd_port::failed(task doing, int system_errno) noexcept {
   return ended(doing, means_gone(system_errno) ? problem::gone : problem::system, system_errno);
 }
 
-tl::unexpected<error> fd_port::ended(task doing, problem what, int system_errno) noexcept {
-  if (what == problem::gone) is_gone_ = true;
-  return failure(doing, what, name_, system_errno);
+tl::unexpected<error> fd_port::ended(task doing, problem code, int system_errno) noexcept {
+  if (code == problem::gone) is_gone_ = true;
+  return failure(doing, code, name_, system_errno);
 }
 
 }  // namespace g4lidar

@@ -90,7 +90,7 @@ class fd_port : public transport {
   [[nodiscard]] result<received> read_now(std::span<std::uint8_t> out, short polled) noexcept;
   /// The result of poll; 0 if the deadline has passed.
   [[nodiscard]] result<short> wait(task doing, short events, std::int64_t deadline_ns) noexcept;
-  [[nodiscard]] tl::unexpected<error> ended(task doing, problem what, int system_errno) noexcept;
+  [[nodiscard]] tl::unexpected<error> ended(task doing, problem code, int system_errno) noexcept;
 
   const system_calls* calls_;
   owned_fd fd_;

@@ -63,10 +63,10 @@ address_list addresses_of(const host_and_port& wanted) {
   return address_list(failed == 0 ? list : nullptr);
 }
 
-class connection final : public fd_port {
+class tcp_connection final : public fd_port {
  public:
-  connection(const system_calls& calls, owned_fd fd, std::unique_ptr<waker> waits, std::string name,
-             std::uint32_t baud) noexcept
+  tcp_connection(const system_calls& calls, owned_fd fd, std::unique_ptr<waker> waits,
+                 std::string name, std::uint32_t baud) noexcept
       : fd_port(calls, std::move(fd), std::move(waits), std::move(name), baud,
                 problem::end_of_input) {}
 
@@ -145,11 +145,11 @@ result<std::unique_ptr<transport>> open_connection(std::string_view address,
     refused = fd.get() < 0 ? errno : connect(fd.get(), *to, deadline_ns, *waits, calls);
     if (refused != 0) continue;
     tune(fd.get(), calls);
-    return std::make_unique<connection>(calls, std::move(fd), std::move(waits), std::move(name),
-                                        options.baud);
+    return std::make_unique<tcp_connection>(calls, std::move(fd), std::move(waits), std::move(name),
+                                            options.baud);
   }
-  const problem what = is_our_own(refused) ? problem::system : problem::cannot_connect;
-  return failure(task::opening, what, name, refused);
+  const problem code = is_our_own(refused) ? problem::system : problem::cannot_connect;
+  return failure(task::opening, code, name, refused);
 }
 
 result<std::unique_ptr<transport>> tcp_port::open(std::string_view address,

@@ -17,7 +17,7 @@
 #include <variant>
 #include <vector>
 
-#include "acceptance/rows.hpp"
+#include "acceptance/kit_rows.hpp"
 #include "g4lidar/sim/device_options.hpp"
 #include "g4lidar/sim/virtual_port.hpp"
 #include "g4lidar/sim/world.hpp"

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "acceptance/rows.hpp"
+#include "acceptance/kit_rows.hpp"
 #include "g4lidar/core/model.hpp"
 
 namespace g4_tool::acceptance::test {

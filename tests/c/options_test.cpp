@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Options of programs that were compiled with another version, and members that must be 0.
-#include "c/options.hpp"
+#include "c/versioned_options.hpp"
 
 #include <cstdint>
 #include <cstring>

@@ -18,7 +18,7 @@ namespace g4lidar {
 namespace {
 
 using byte_vector = std::vector<std::uint8_t>;
-using known_by = zero_offset::known_by;
+using known_by = zero_offset::stated_by;
 
 /// `A5 5A`, length 4, type 4.
 byte_vector number(std::int32_t value) {

@@ -23,7 +23,7 @@ TEST(ExtremeOffset, OfZero) {
   for (const std::int32_t cdeg : values<std::int32_t>()) {
     for (const float angle_deg : values<float>()) {
       zero_offset offset;
-      offset.set({cdeg}, zero_offset::known_by::user);
+      offset.set({cdeg}, zero_offset::stated_by::user);
       std::array<point, 1> points{{{.angle_deg = angle_deg}}};
       offset.add_to(points);
     }

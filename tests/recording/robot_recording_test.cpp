@@ -113,16 +113,16 @@ template <class Put>
 std::vector<std::uint8_t> file_with_odometry(Put put) {
   using namespace mcap;
   channel_set channels;
-  channels.add(topic::odometry);
+  channels.add(channel_id::odometry);
   record_text file;
   file.put(bytes(magic));
   open_chunk chunk;
   channels.put_channels(chunk.text());
   for (std::uint32_t i = 0; i < 100; ++i) {
-    chunk.begin_message(topic::odometry, i, time_of(i) + wall_ahead_ns);
+    chunk.begin_message(channel_id::odometry, i, time_of(i) + wall_ahead_ns);
     put(chunk.text().memory(), i);
     chunk.end_message();
-    chunk.begin_message(topic::from_device, i, time_of(i) + wall_ahead_ns);
+    chunk.begin_message(channel_id::from_device, i, time_of(i) + wall_ahead_ns);
     put_recorded_bytes(chunk.text(), reading(i), time_of(i));
     chunk.end_message();
   }

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "cli/option_rows.hpp"
 #include "cli/program.hpp"
-#include "cli/rows.hpp"
 
 namespace ros2 {
 namespace {

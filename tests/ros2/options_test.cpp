@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Names of ROS 2, without a domain.
-#include "options.hpp"
+#include "ros2_options.hpp"
 
 #include <gmock/gmock.h>
 

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: MIT
-# cmake -DROOT=<project> -DAWK=<awk> [-DMOST_MEMBERS=<number>] [-DMOST_FUNCTIONS=<number>] [-DMOST_LINES=<number>] -P check_sizes.cmake
+# cmake -DROOT=<project> -DAWK=<awk> [-DMOST_MEMBERS=<number>] [-DMOST_FUNCTIONS=<number>] [-DMOST_FUNCTION_LINES=<number>] [-DMOST_LINES=<number>] -P check_sizes.cmake
 #
 # Fails if a class of include, src, tools, ros or python/src has more than 20 data members, those of its base classes
-# included, or more than 25 functions besides constructors, or if a source file has more than 350 lines.
+# included, or more than 25 functions besides constructors, or a function of more than 60 lines, or if a source file has
+# more than 350 lines.
 
 cmake_minimum_required(VERSION 3.22)
 if(NOT DEFINED MOST_MEMBERS)
@@ -10,6 +11,9 @@ if(NOT DEFINED MOST_MEMBERS)
 endif()
 if(NOT DEFINED MOST_FUNCTIONS)
   set(MOST_FUNCTIONS 25)
+endif()
+if(NOT DEFINED MOST_FUNCTION_LINES)
+  set(MOST_FUNCTION_LINES 60)
 endif()
 if(NOT DEFINED MOST_LINES)
   set(MOST_LINES 350)
@@ -51,6 +55,8 @@ sources(library include src tools ros python/src)
 sources(all include src tools ros python tests bench examples)
 awk_lines(faults -v most=${MOST_MEMBERS} -v most_functions=${MOST_FUNCTIONS} -f "${CMAKE_CURRENT_LIST_DIR}/count_members.awk" ${library})
 list(POP_BACK faults classes)
+awk_lines(long_functions -v most=${MOST_FUNCTION_LINES} -f "${CMAKE_CURRENT_LIST_DIR}/long_functions.awk" ${library})
+list(APPEND faults ${long_functions})
 foreach(name IN LISTS larger)
   list(FILTER faults EXCLUDE REGEX ": ${name} has ")
 endforeach()

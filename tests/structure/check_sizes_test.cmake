@@ -6,6 +6,7 @@
 cmake_minimum_required(VERSION 3.22)
 
 set(most_functions 99)
+set(most_function_lines 99)
 function(expect members lines message) # <file> <text>...
   file(REMOVE_RECURSE "${SCRATCH}")
   file(WRITE "${SCRATCH}/tests/test.cpp" "")
@@ -18,7 +19,7 @@ function(expect members lines message) # <file> <text>...
   endwhile()
   execute_process(
     COMMAND "${CMAKE_COMMAND}" "-DROOT=${SCRATCH}" "-DAWK=${AWK}" -DMOST_MEMBERS=${members} -DMOST_LINES=${lines}
-            -DMOST_FUNCTIONS=${most_functions} -P "${SCRIPT}"
+            -DMOST_FUNCTIONS=${most_functions} -DMOST_FUNCTION_LINES=${most_function_lines} -P "${SCRIPT}"
     OUTPUT_VARIABLE output ERROR_VARIABLE output
   )
   string(REGEX REPLACE "[ \n]+" " " output "${output}")
@@ -66,3 +67,9 @@ expect(3 3 "bench/long.cpp has more than 3 lines" src/x.hpp "1\n2\n3" bench/long
 expect(3 3 "ros/x/test/long.py has more than 3 lines" src/x.hpp "1\n2\n3" ros/x/test/long.py "1\n2\n3\n4")
 expect(1 99 "ros/x/src/x.hpp: x has 2 data members" src/y.hpp "1" ros/x/src/x.hpp "class x { int a, b| }|")
 expect(3 4 "3 files of at most 4 lines" src/x.hpp "1\n2\n3" bench/long.cpp "1\n2\n3\n4")
+
+# Functions of known length, of which the signature is a part; a class or a table is none.
+set(most_function_lines 4)
+expect(9 99 "python/src/x.cpp:2: a function of 5 lines" src/x.hpp "" python/src/x.cpp "namespace n {\nvoid f(int a,\n       int b) {\n  if (a) {\n  }\n}\n}")
+expect(9 99 "ros/x/src/x.cpp:3: a function of 5 lines" src/x.hpp "" ros/x/src/x.cpp "class x {\n\n  x(int a)\n      : a_(a) {\n    f()|\n    g()|\n  }\n}|")
+expect(9 99 "1 classes" src/x.hpp "class x {\n  int f(int a) {\n    for (|||) {\n    }\n  }\n}|\nconstexpr auto t = f({\n1,\n2,\n3,\n4})|\n")

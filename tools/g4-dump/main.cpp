@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // g4-dump: the console tool.
-#include "verbs/verbs.hpp"
+#include "verbs/dump_verbs.hpp"
 
 namespace {
 

@@ -14,7 +14,7 @@
 
 #include "dds/bus.hpp"
 #include "g4lidar/diagnostics/diagnosis.hpp"
-#include "options.hpp"
+#include "ros2_options.hpp"
 #include "scan_messages.hpp"
 
 namespace g4_tool {

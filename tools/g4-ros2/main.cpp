@@ -8,7 +8,7 @@
 #include "cli/exit_code.hpp"
 #include "cli/logger.hpp"
 #include "node.hpp"
-#include "options.hpp"
+#include "ros2_options.hpp"
 
 namespace g4_tool {
 namespace {

@@ -14,7 +14,7 @@
 #include "dds/bus.hpp"
 #include "io/interrupt.hpp"
 #include "io/service_watch.hpp"
-#include "lidar_node.hpp"
+#include "lidar_publisher.hpp"
 #include "node_announcement.hpp"
 #include "run_command.hpp"
 
@@ -34,11 +34,11 @@ class node {
         bus_(dds::read_network(options.transport.domain, options.transport.interface)) {
     const std::vector<named_source> lidars = sources_of(options_);
     if (options_.merges) {
-      nodes_.push_back(std::make_unique<lidar_node>(bus_, options_, lidars, true));
+      nodes_.push_back(std::make_unique<lidar_publisher>(bus_, options_, lidars, true));
     } else {
       for (const named_source& each : lidars)
         nodes_.push_back(
-            std::make_unique<lidar_node>(bus_, options_, std::vector{each}, nodes_.empty()));
+            std::make_unique<lidar_publisher>(bus_, options_, std::vector{each}, nodes_.empty()));
     }
     if (const std::string name = run_topic(options_); name != "off") {
       run_.emplace(bus_, full_name(options_.name_space, name), [this](bool runs) {
@@ -98,7 +98,7 @@ class node {
     service_.alive();
     if (!service_.has_manager()) return;
     std::string text;
-    for_each_lidar([&](const lidar_node& each, std::size_t lidar) {
+    for_each_lidar([&](const lidar_publisher& each, std::size_t lidar) {
       text += fmt::format("{}{} {}", text.empty() ? "" : ", ", each.name_space(lidar),
                           name_of(each.state(lidar)));
     });
@@ -107,7 +107,7 @@ class node {
 
   const ros2_options& options_;
   dds::bus bus_;
-  std::vector<std::unique_ptr<lidar_node>> nodes_;
+  std::vector<std::unique_ptr<lidar_publisher>> nodes_;
   std::optional<run_command> run_;
   std::optional<node_announcement> announcement_;
   time_limits limits_{options_.common.duration, 0ns};

@@ -2,7 +2,7 @@
 // All lidars of one process in a ROS 2 domain.
 #pragma once
 
-#include "options.hpp"
+#include "ros2_options.hpp"
 
 namespace g4_tool {
 

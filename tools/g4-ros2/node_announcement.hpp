@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "dds/bus.hpp"
-#include "options.hpp"
+#include "ros2_options.hpp"
 
 namespace g4_tool {
 

@@ -12,7 +12,7 @@
 #include "dds/bus.hpp"
 #include "g4lidar/motion.hpp"
 #include "g4lidar/scan_shaper.hpp"
-#include "options.hpp"
+#include "ros2_options.hpp"
 
 namespace g4_tool {
 

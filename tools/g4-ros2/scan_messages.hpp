@@ -14,7 +14,7 @@
 #include "g4lidar/lidar_service.hpp"
 #include "g4lidar/message/ros_messages.hpp"
 #include "g4lidar/scan.hpp"
-#include "options.hpp"
+#include "ros2_options.hpp"
 
 namespace g4_tool {
 

@@ -160,8 +160,8 @@ shared_bytes client_registry::status() const {
   return status_;
 }
 
-client_registry::demand client_registry::wanted() const {
-  demand all;
+client_registry::wanted_messages client_registry::wanted() const {
+  wanted_messages all;
   const std::lock_guard lock(mutex_);
   for (const client& each : clients_) {
     all.page = all.page || each.kind == client_kind::page;

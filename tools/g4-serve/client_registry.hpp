@@ -64,14 +64,14 @@ class client_registry {
   // ---- for the publisher ----------------------------------------------------------------------
 
   /// The messages that at least one client receives.
-  struct demand {
+  struct wanted_messages {
     bool page = false;
     std::array<bool, channel_count> channels{};
     [[nodiscard]] bool wants(channel which) const noexcept {
       return channels[static_cast<std::size_t>(which)];
     }
   };
-  [[nodiscard]] demand wanted() const;
+  [[nodiscard]] wanted_messages wanted() const;
 
   /// Sets the first message for new pages and, if `sends`, sends it to the present ones.
   void send_hello(const std::string& hello, bool sends);

@@ -20,7 +20,7 @@
 #include "g4lidar/transport/transport.hpp"
 #include "io/far_times.hpp"
 #include "io/output.hpp"
-#include "io/source.hpp"
+#include "io/source_word.hpp"
 
 namespace g4_tool {
 namespace {

@@ -10,8 +10,8 @@
 
 #include "cli/exit_code.hpp"
 #include "cli/logger.hpp"
-#include "cli/settings.hpp"
 #include "g4lidar/diagnostics/diagnosis.hpp"
+#include "cli/setting_words.hpp"
 #include "g4lidar/message/ros_messages.hpp"
 #include "io/service_source.hpp"
 
@@ -91,7 +91,7 @@ std::optional<failure> scan_publisher::failure_of_all() const {
 }
 
 service_demand scan_publisher::wanted() const {
-  const client_registry::demand now = registry_.wanted();
+  const client_registry::wanted_messages now = registry_.wanted();
   return {.for_grid = now.wants(channel::scan),
           .kept = now.page || now.wants(channel::points),
           .runs = true};
@@ -116,7 +116,7 @@ void scan_publisher::on_measured(std::size_t lidar, const scan& found) {
 }
 
 void scan_publisher::on_scan(const service_scan& made) {
-  const client_registry::demand now = registry_.wanted();
+  const client_registry::wanted_messages now = registry_.wanted();
   const std::int64_t stamp_ns = made.stamp_ns(made.first_ns);
   message_header header{.stamp_ns = stamp_ns,
                         .frame_id = frame_id_,

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "io/service_source.hpp"
-#include "io/source.hpp"
+#include "io/source_word.hpp"
 
 namespace g4_tool {
 

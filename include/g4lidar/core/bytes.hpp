@@ -18,19 +18,19 @@ using bytes = std::span<const std::uint8_t>;
 
 /// The 16 bits at `data[at]` and `data[at + 1]`, least significant byte first. *Pure.*
 /// Reading past the end is a mistake of the caller.
-[[nodiscard]] constexpr std::uint16_t load_u16(bytes data, std::size_t at) noexcept {
-  return static_cast<std::uint16_t>(data[at] | (data[at + 1] << 8));
+[[nodiscard]] constexpr std::uint16_t load_u16(bytes data, std::size_t offset) noexcept {
+  return static_cast<std::uint16_t>(data[offset] | (data[offset + 1] << 8));
 }
 
 /// The 32 bits that start at `data[at]`, least significant byte first. *Pure.*
-[[nodiscard]] constexpr std::uint32_t load_u32(bytes data, std::size_t at) noexcept {
-  return static_cast<std::uint32_t>(load_u16(data, at)) |
-         (static_cast<std::uint32_t>(load_u16(data, at + 2)) << 16);
+[[nodiscard]] constexpr std::uint32_t load_u32(bytes data, std::size_t offset) noexcept {
+  return static_cast<std::uint32_t>(load_u16(data, offset)) |
+         (static_cast<std::uint32_t>(load_u16(data, offset + 2)) << 16);
 }
 
 /// The 64 bits that start at `data[at]`, least significant byte first. *Pure.*
-[[nodiscard]] constexpr std::uint64_t load_u64(bytes data, std::size_t at) noexcept {
-  const std::uint8_t* const p = data.data() + at;
+[[nodiscard]] constexpr std::uint64_t load_u64(bytes data, std::size_t offset) noexcept {
+  const std::uint8_t* const p = data.data() + offset;
   // One expression over single bytes: compilers translate it to a plain 8-byte load.
   return static_cast<std::uint64_t>(p[0]) | static_cast<std::uint64_t>(p[1]) << 8 |
          static_cast<std::uint64_t>(p[2]) << 16 | static_cast<std::uint64_t>(p[3]) << 24 |
@@ -39,10 +39,10 @@ using bytes = std::span<const std::uint8_t>;
 }
 
 /// Writes `value` to `out[at]` and `out[at + 1]`, least significant byte first.
-constexpr void store_u16(std::span<std::uint8_t> out, std::size_t at,
+constexpr void store_u16(std::span<std::uint8_t> out, std::size_t offset,
                          std::uint16_t value) noexcept {
-  out[at] = static_cast<std::uint8_t>(value & 0xFFU);
-  out[at + 1] = static_cast<std::uint8_t>(value >> 8);
+  out[offset] = static_cast<std::uint8_t>(value & 0xFFU);
+  out[offset + 1] = static_cast<std::uint8_t>(value >> 8);
 }
 
 /// An argument that owns its bytes and is destroyed at the end of the call: a view of it would

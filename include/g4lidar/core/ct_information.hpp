@@ -160,12 +160,12 @@ struct ct_information {
   friend constexpr bool operator==(const ct_information&, const ct_information&) = default;
 };
 
-/// What a device of the model `which` would report with `stated`. CT has only the lower bits of the number
+/// What a device of the model `model` would report with `stated`. CT has only the lower bits of the number
 /// of the model. Not known, device_information::is_known(), if these were not stated. *Pure.*
 [[nodiscard]] constexpr device_information information_of(const ct_information& stated,
-                                                          const model& which) noexcept {
+                                                          const model& model) noexcept {
   std::uint8_t number = stated.id_low_bits;
-  for (const std::uint8_t id : which.ids) {
+  for (const std::uint8_t id : model.ids) {
     if (stated.id_low_bits != 0 && (id & 15U) == stated.id_low_bits) number = id;
   }
   device_information made{number, stated.firmware_major, stated.firmware_minor, stated.hardware,

@@ -43,126 +43,125 @@ inline constexpr sample_layout g4_layout = g4_format.layout;
 /// least: presence::unknown, a nominal rate of 0.
 inline constexpr auto models = [] {
   using enum sample_layout;
-  using enum correction_kind;
   using enum link_kind;
   using enum motor_kind;
   using enum presence;
-  constexpr auto at_its_rate = usual_kind::at_its_rate;
-  constexpr auto of_its_layout = usual_kind::of_its_layout;
-  constexpr sample_format quarter_samples{quarter_mm, triangle};
-  constexpr sample_format flagged_samples{flagged_mm, triangle};
-  constexpr sample_format half_mm_samples{half_mm, triangle};
-  constexpr sample_format zeroed_samples{quarter_mm, triangle, 40, true};
-  constexpr sample_format zeroed_10{intensity_10, triangle, 40, true};
-  constexpr sample_format triangle_10{intensity_10, triangle};
-  constexpr sample_format triangle_8{intensity_8, triangle};
-  constexpr sample_format scl_samples{intensity_8, scl};
-  constexpr sample_format tof_8{intensity_8, correction_kind::none};
-  constexpr sample_format tof_16{intensity_16, correction_kind::none, 40, true};
-  constexpr sample_format tof_mm{whole_mm, correction_kind::none};
-  constexpr sample_format tg_samples{whole_mm, correction_kind::none, 40, true, all_rate_codes - 1};
-
   constexpr auto fixed = [](std::uint32_t hz, std::uint16_t shortest_mm = 0) {
-    return sample_rate_list{{{{hz, shortest_mm}}}, hz, false};
+    return sample_rate_list{.entries = {{{hz, shortest_mm}}}, .nominal_hz = hz};
   };
-  constexpr sample_rate_list f4_rates{{{{4000}, {6000}}}, 4000, true};
-  constexpr sample_rate_list g6_rates{{{{8000, 100}, {16000, 260}, {18000, 280}}}, 18000, true};
-  constexpr sample_rate_list x2_rates{{{{3000}}}, 3000, false, {}, 2500, 3600};
-  constexpr sample_rate_list x3_pro_rates{{{{3000}, {4000}}}};
-  constexpr sample_rate_list s2_rates{{{{3000}, {4000}, {5000}}}};
-  constexpr sample_rate_list tg_rates{{{{10000}, {18000}, {20000}}}, 0, false, {20000, 10000}};
-
   constexpr auto by_pin = [](std::string_view pin) { return frequency_properties{.pin = pin}; };
-  constexpr frequency_properties by_sctr = by_pin("M_SCTR");
-  constexpr frequency_properties by_ctr = by_pin("M_CTR");
-  constexpr frequency_properties by_either = by_pin("M_CTR or M_SCTP");
-  constexpr frequency_properties by_any = by_pin("M_SCTR or M_CTR");
-  constexpr frequency_properties by_some = by_pin("for the speed");
-  constexpr frequency_properties set_5_to_12{50, 120};
-  constexpr frequency_properties set_6_to_12{60, 120};
-  constexpr frequency_properties tg_frequency{30, 160, -40, 30};
+  // The model of the same sub-family as `base` that differs from it so. One layout stays one layout.
+  constexpr auto like = [](const model& base, std::string_view word, std::string_view name,
+                           auto differ) {
+    model made = base;
+    made.word = word;
+    made.name = name;
+    differ(made);
+    const bool has_one = base.other_layout == base.samples.layout;
+    if (has_one && made.other_layout == base.other_layout) made.other_layout = made.samples.layout;
+    return made;
+  };
 
-  constexpr firmware_difference r2_old{0x0107, quarter_mm, 0, 4};
-  constexpr firmware_difference tg_old{0x0102, half_mm, 0, 4};
-
-  // One column a field; the formatter would write one field a line.
+  // Several fields a line; the formatter would write one.
   // clang-format off
-  // word, name, ids, bauds, samples, link, motor,
-  // rates, frequency, range, turn, divisor of the zero angle, protection, information in CT,
-  // motor settings, other layout, old firmware, pitch, whether it is the usual one
+  constexpr model g_series{
+      .word = {}, .name = {}, .bauds = {230400}, .link = two_way, .motor = command, .rates = fixed(5000),
+      .frequency = {50, 120}, .range = {100, 16000}, .turn_deg = 180};
+  constexpr model g1 = like(g_series, "g1", "G1", [&](model& m) {
+    m.ids = {19}; m.samples.has_angle_replies = true; m.rates = fixed(9000, 280); m.zero_angle_divisor = 4; });
+  constexpr model g6 = like(g_series, "g6", "G6", [&](model& m) {
+    m.ids = {13}; m.bauds = {512000}; m.samples.layout = half_mm; m.range.max_mm = 25000; m.protection = yes;
+    m.rates = {.entries = {{{8000, 100}, {16000, 260}, {18000, 280}}}, .nominal_hz = 18000, .is_settable = true}; });
+
+  constexpr model x3{
+      .word = "x3", .name = "X3", .ids = {4, 6}, .bauds = {115200}, .samples = {flagged_mm}, .link = one_way,
+      .motor = dtr,
+      .rates = {.entries = {{{3000}}}, .nominal_hz = 3000, .least_seen_hz = 2500, .most_seen_hz = 3600},
+      .frequency = by_pin("M_SCTR or M_CTR"), .range = {100, 8000}, .protection = no};
+  constexpr model x2 = like(x3, "x2", "X2", [&](model& m) {
+    m.frequency = by_pin("M_CTR or M_SCTP"); m.usual = usual_kind::of_its_layout; });
+  constexpr model s2 = like(x3, "s2", "S2", [&](model& m) {
+    m.ids = {4, 12}; m.bauds = {115200, 128000}; m.rates = {.entries = {{{3000}, {4000}, {5000}}}};
+    m.range = {80, 12000}; m.ct_information = yes; m.other_layout = intensity_8; });
+  // Their bauds carry 3 kHz of such samples, not 4.
+  constexpr model s2_intensity = like(s2, "s2-intensity", "S2 with intensity", [&](model& m) {
+    m.samples.layout = intensity_8; m.other_layout = flagged_mm; m.rates = fixed(3000); });
+  constexpr model s4 = like(x3, "s4", "S4", [&](model& m) {
+    m.ids = {4}; m.link = two_way; m.rates = fixed(4000); m.frequency = by_pin("for the speed"); });
+
+  constexpr model t_mini{
+      .word = "t-mini", .name = "T-mini", .ids = {140}, .bauds = {230400},
+      .samples = {intensity_8, correction_kind::none}, .link = two_way, .motor = command, .rates = fixed(4000),
+      .frequency = {60, 120}, .range = {50, 12000}};
+  constexpr model tg15{
+      .word = "tg15", .name = "TG15", .ids = {100}, .bauds = {512000},
+      .samples = {whole_mm, correction_kind::none, 40, true, all_rate_codes - 1}, .link = two_way, .motor = command,
+      .rates = {.entries = {{{10000}, {18000}, {20000}}}, .further_codes_hz = {20000, 10000}},
+      .frequency = {.min_dhz = 30, .max_dhz = 160, .reply_offset_chz = -40, .ct_offset_dhz = 30},
+      .range = {50, 30000}, .turn_deg = 180, .zero_angle_divisor = 4, .protection = yes,
+      .old_firmware = {.last_version = 0x0102, .layout = half_mm, .zero_angle_divisor = 4}};
+  constexpr model tx8 = like(s4, "tx8", "TX8", [&](model& m) {
+    m.ids = {100}; m.samples = {whole_mm, correction_kind::none}; m.link = one_way; m.range.min_mm = 50; });
+
   return std::to_array<model>({
       g4_model,
-      {"g4-pro",         "G4 Pro",         {7},     {230400},         g4_format,       two_way, command,
-       g4_model.rates,   set_5_to_12,  {100, 16000}, 180, 0,   yes,     unknown, true},
-      {"g5",             "G5",             {20},    {230400},         g4_format,       two_way, command,
-       g4_model.rates,   set_5_to_12,  {100, 16000}, 180, 0,   unknown, unknown},
-      {"f4",             "F4",             {1},     {115200},         quarter_samples, two_way, command,
-       fixed(4000),      set_5_to_12,  {120, 12000}, 180, 0,   no,      unknown},
-      {"f4-pro",         "F4 Pro",         {8, 4},  {230400},         quarter_samples, two_way, command,
-       f4_rates,         set_5_to_12,  {120, 12000}, 180, 0,   yes,     unknown, true},
-      {"g1",             "G1",             {19},    {230400},         zeroed_samples , two_way, command,
-       fixed(9000, 280), set_5_to_12,  {100, 16000}, 180, 4,   unknown, unknown},
-      {"g2",             "G2",             {15},    {230400},         zeroed_10,       two_way, command,
-       fixed(5000, 280), set_5_to_12,  {100, 16000}, 180, 4,   unknown, unknown},
-      {"g2a",            "G2A",            {14},    {230400},         zeroed_samples , two_way, command,
-       fixed(5000),      set_5_to_12,  {100, 12000}, 180, 4,   unknown, unknown},
-      {"g2c",            "G2C",            {16},    {115200},         zeroed_samples , two_way, command,
-       fixed(4000),      set_5_to_12,  {100, 12000}, 180, 4,   unknown, unknown},
-      {"g4c",            "G4C",            {18},    {115200},         quarter_samples, two_way, command,
-       fixed(4000),      set_5_to_12,  {100, 12000}, 180, 0,   unknown, unknown},
-      {"g4b",            "G4B",            {17},    {512000},         triangle_10,     two_way, command,
-       fixed(10000),     set_5_to_12,  {120, 16000}, 180, 0,   unknown, unknown},
-      {"r2",             "R2",             {9},     {230400},         zeroed_samples , two_way, command,
-       fixed(5000),      set_5_to_12,  {120, 16000}, 180, 100, unknown, unknown, false, quarter_mm, r2_old},
-      {"g6",             "G6",             {13},    {512000},         half_mm_samples, two_way, command,
-       g6_rates,         set_5_to_12,  {100, 25000}, 180, 0,   yes,     unknown},
-      {"g7",             "G7",             {21},    {512000},         half_mm_samples, two_way, command,
-       g6_rates,         set_5_to_12,  {100, 25000}, 180, 0,   yes,     unknown},
-      {"x4",             "X4",             {6},     {128000},         flagged_samples, two_way, dtr,
-       fixed(5000),      by_sctr,      {120, 10000}, 0,   0,   no,      no},
-      {"x4-pro",         "X4 Pro",         {4, 6},  {128000},         flagged_samples, one_way, supply,
-       fixed(5000),      by_ctr,       {120, 10000}, 0,   0,   no,      yes, false, flagged_mm, {}, false, at_its_rate},
-      {"x2",             "X2",             {4, 6},  {115200},         flagged_samples, one_way, dtr,
-       x2_rates,         by_either,    {100, 8000},  0,   0,   no,      unknown, false, flagged_mm, {}, false, of_its_layout},
-      {"x2l",            "X2L",            {4, 6},  {115200},         flagged_samples, one_way, dtr,
-       x2_rates,         by_either,    {100, 8000},  0,   0,   no,      unknown},
-      {"x3",             "X3",             {4, 6},  {115200},         flagged_samples, one_way, dtr,
-       x2_rates,         by_any,       {100, 8000},  0,   0,   no,      unknown},
-      {"x3-pro",         "X3 Pro",         {4, 6},  {115200},         flagged_samples, one_way, dtr,
-       x3_pro_rates,     by_any,       {100, 8000},  0,   0,   no,      unknown, false, flagged_mm, {}, false, at_its_rate},
-      {"s2",             "S2",             {4, 12}, {115200, 128000}, flagged_samples, one_way, dtr,
-       s2_rates,         by_any,       {80, 12000},  0,   0,   no,      yes, false, intensity_8},
-      {"s2-pro",         "S2 Pro",         {4, 12}, {115200, 128000}, flagged_samples, one_way, dtr,
-       s2_rates,         by_any,       {80, 12000},  0,   0,   no,      yes, false, intensity_8, {}, false, at_its_rate},
-      // Their bauds carry 3 kHz of such samples, not 4.
-      {"s2-intensity",   "S2 with intensity", {4, 12}, {115200, 128000}, triangle_8,   one_way, dtr,
-       fixed(3000),      by_any,       {80, 12000},  0,   0,   no,      yes, false, flagged_mm},
-      {"s2-pro-intensity", "S2 Pro with intensity", {4, 12}, {115200, 128000}, triangle_8, one_way, dtr,
-       fixed(3000),      by_any,       {80, 12000},  0,   0,   no,      yes, false, flagged_mm, {}, false, at_its_rate},
-      {"s4",             "S4",             {4},     {115200},         flagged_samples, two_way, dtr,
-       fixed(4000),      by_some,      {100, 8000},  0,   0,   no,      unknown},
-      {"s4b",            "S4B",            {4, 11}, {153600},         triangle_8,      two_way, dtr,
-       fixed(4000),      by_some,      {100, 8000},  0,   0,   no,      unknown},
-      {"scl",            "SCL",            {22},    {115200},         scl_samples,     one_way, dtr,
-       fixed(3000),      by_some,      {120, 8000},  0,   0,   no,      unknown},
-      {"t-mini",         "T-mini",         {140},   {230400},         tof_8,           two_way, command,
-       fixed(4000),      set_6_to_12,  {50, 12000},  0,   0,   unknown, unknown},
-      {"t-mini-pro",     "T-mini Pro",     {150},   {230400},         tof_8,           two_way, command,
-       fixed(4000),      set_6_to_12,  {20, 12000},  0,   0,   unknown, unknown, false, intensity_8, {}, false, of_its_layout},
-      {"t-mini-plus",    "T-mini Plus",    {151},   {230400},         tof_8,           two_way, command,
-       fixed(4000),      set_6_to_12,  {50, 12000},  0,   0,   unknown, unknown},
-      {"t-mini-plus-sh", "T-mini Plus SH", {152},   {230400},         tof_16,          two_way, command,
-       fixed(4000),      set_6_to_12,  {50, 25000},  0,   0,   unknown, unknown, false, intensity_16, {}, true, of_its_layout},
-      {"tg15",           "TG15",           {100},   {512000},         tg_samples,      two_way, command,
-       tg_rates,         tg_frequency, {50, 30000},  180, 4,   yes,     unknown, false, whole_mm, tg_old},
-      {"tg30",           "TG30",           {101},   {512000},         tg_samples,      two_way, command,
-       tg_rates,         tg_frequency, {50, 30000},  180, 4,   yes,     unknown, false, whole_mm, tg_old},
-      {"tg50",           "TG50",           {102},   {512000},         tg_samples,      two_way, command,
-       tg_rates,         tg_frequency, {50, 50000},  180, 4,   yes,     unknown, false, whole_mm, tg_old},
-      {"tx8",            "TX8",            {100},   {115200},         tof_mm,          one_way, dtr,
-       fixed(4000),      by_some,      {50, 8000},   0,   0,   no,      unknown},
-      {"tx20",           "TX20",           {100},   {115200},         tof_mm,          one_way, dtr,
-       fixed(4000),      by_some,      {50, 20000},  0,   0,   no,      unknown},
+      like(g4_model, "g4-pro", "G4 Pro", [&](model& m) { m.ids = {7}; m.usual = usual_kind::no; }),
+      like(g4_model, "g5", "G5", [&](model& m) {
+        m.ids = {20}; m.protection = unknown; m.has_motor_settings = false; m.usual = usual_kind::no; }),
+      like(g_series, "f4", "F4", [&](model& m) {
+        m.ids = {1}; m.bauds = {115200}; m.rates = fixed(4000); m.range = {120, 12000}; m.protection = no; }),
+      like(g_series, "f4-pro", "F4 Pro", [&](model& m) {
+        m.ids = {8, 4}; m.rates = {.entries = {{{4000}, {6000}}}, .nominal_hz = 4000, .is_settable = true};
+        m.range = {120, 12000}; m.protection = yes; m.has_motor_settings = true; }),
+      g1,
+      like(g1, "g2", "G2", [&](model& m) {
+        m.ids = {15}; m.samples.layout = intensity_10; m.rates = fixed(5000, 280); }),
+      like(g1, "g2a", "G2A", [&](model& m) { m.ids = {14}; m.rates = fixed(5000); m.range.max_mm = 12000; }),
+      like(g1, "g2c", "G2C", [&](model& m) {
+        m.ids = {16}; m.bauds = {115200}; m.rates = fixed(4000); m.range.max_mm = 12000; }),
+      like(g_series, "g4c", "G4C", [&](model& m) {
+        m.ids = {18}; m.bauds = {115200}; m.rates = fixed(4000); m.range.max_mm = 12000; }),
+      like(g_series, "g4b", "G4B", [&](model& m) {
+        m.ids = {17}; m.bauds = {512000}; m.samples.layout = intensity_10; m.rates = fixed(10000);
+        m.range.min_mm = 120; }),
+      like(g1, "r2", "R2", [&](model& m) {
+        m.ids = {9}; m.rates = fixed(5000); m.range.min_mm = 120; m.zero_angle_divisor = 100;
+        m.old_firmware = {.last_version = 0x0107, .layout = quarter_mm, .zero_angle_divisor = 4}; }),
+      g6,
+      like(g6, "g7", "G7", [&](model& m) { m.ids = {21}; }),
+      like(x3, "x4", "X4", [&](model& m) {
+        m.ids = {6}; m.bauds = {128000}; m.link = two_way; m.rates = fixed(5000); m.frequency = by_pin("M_SCTR");
+        m.range = {120, 10000}; m.ct_information = no; }),
+      like(x3, "x4-pro", "X4 Pro", [&](model& m) {
+        m.bauds = {128000}; m.motor = supply; m.rates = fixed(5000); m.frequency = by_pin("M_CTR");
+        m.range = {120, 10000}; m.ct_information = yes; m.usual = usual_kind::at_its_rate; }),
+      x2,
+      like(x2, "x2l", "X2L", [&](model& m) { m.usual = usual_kind::no; }),
+      x3,
+      like(x3, "x3-pro", "X3 Pro", [&](model& m) {
+        m.rates = {.entries = {{{3000}, {4000}}}}; m.usual = usual_kind::at_its_rate; }),
+      s2,
+      like(s2, "s2-pro", "S2 Pro", [&](model& m) { m.usual = usual_kind::at_its_rate; }),
+      s2_intensity,
+      like(s2_intensity, "s2-pro-intensity", "S2 Pro with intensity", [&](model& m) {
+        m.usual = usual_kind::at_its_rate; }),
+      s4,
+      like(s4, "s4b", "S4B", [&](model& m) { m.ids = {4, 11}; m.bauds = {153600}; m.samples.layout = intensity_8; }),
+      like(s4, "scl", "SCL", [&](model& m) {
+        m.ids = {22}; m.samples = {intensity_8, correction_kind::scl}; m.link = one_way; m.rates = fixed(3000);
+        m.range.min_mm = 120; }),
+      t_mini,
+      like(t_mini, "t-mini-pro", "T-mini Pro", [&](model& m) {
+        m.ids = {150}; m.range.min_mm = 20; m.usual = usual_kind::of_its_layout; }),
+      like(t_mini, "t-mini-plus", "T-mini Plus", [&](model& m) { m.ids = {151}; }),
+      like(t_mini, "t-mini-plus-sh", "T-mini Plus SH", [&](model& m) {
+        m.ids = {152}; m.samples.layout = intensity_16; m.samples.has_angle_replies = true; m.range.max_mm = 25000;
+        m.has_pitch = true; m.usual = usual_kind::of_its_layout; }),
+      tg15,
+      like(tg15, "tg30", "TG30", [&](model& m) { m.ids = {101}; }),
+      like(tg15, "tg50", "TG50", [&](model& m) { m.ids = {102}; m.range.max_mm = 50000; }),
+      tx8,
+      like(tx8, "tx20", "TX20", [&](model& m) { m.range.max_mm = 20000; }),
   });
   // clang-format on
 }();
@@ -177,8 +176,8 @@ inline constexpr auto models = [] {
 }
 
 /// "an" before the names that are spoken with a vowel, as X4 and SCL; else "a". *Pure.*
-[[nodiscard]] constexpr std::string_view article_of(const model& which) noexcept {
-  return std::string_view("FRSX").find(which.name.front()) != std::string_view::npos ? "an" : "a";
+[[nodiscard]] constexpr std::string_view article_of(const model& model) noexcept {
+  return std::string_view("FRSX").find(model.name.front()) != std::string_view::npos ? "an" : "a";
 }
 
 /// The model whose devices, and no other model's with a connection of this kind, identify themselves
@@ -289,36 +288,37 @@ inline constexpr auto old_models = [] {
   return is_it(row.ids[0]) || is_it(row.ids[1]);
 }
 
-/// Whether the packets of a device of the model `row` can be valid where `which` is read. *Pure.*
-[[nodiscard]] constexpr bool is_read_as(const model& row, const model& which) noexcept {
+/// Whether the packets of a device of the model `row` can be valid where `lidar_model` is read. *Pure.*
+[[nodiscard]] constexpr bool is_read_as(const model& row, const model& lidar_model) noexcept {
   const bool has_baud = std::any_of(row.bauds.begin(), row.bauds.end(), [&](std::uint32_t baud) {
-    return baud != 0 && (baud == which.bauds[0] || baud == which.bauds[1]);
+    return baud != 0 && (baud == lidar_model.bauds[0] || baud == lidar_model.bauds[1]);
   });
-  return has_baud && sample_size(row.samples.layout) == sample_size(which.samples.layout);
+  return has_baud && sample_size(row.samples.layout) == sample_size(lidar_model.samples.layout);
 }
 
 }  // namespace detail
 
-/// The model `which` of the table, as a device of it is that has reported `who`: with old firmware another
-/// record, of the same name. Valid forever; `which` itself if nothing differs. *Pure.*
+/// The model `lidar_model` of the table, as a device of it is that has reported `information`: with old firmware another
+/// record, of the same name. Valid forever; `lidar_model` itself if nothing differs. *Pure.*
 // NOLINTBEGIN(bugprone-return-const-ref-from-parameter): models are those of the table
-[[nodiscard]] constexpr const model& with_firmware(const model& which,
-                                                   const device_information& who) noexcept {
-  const unsigned version = who.firmware_major * 256U + who.firmware_minor;
-  if (!which.has_number(who.model) || version > which.old_firmware.last_version) return which;
+[[nodiscard]] constexpr const model& with_firmware(const model& lidar_model,
+                                                   const device_information& information) noexcept {
+  const unsigned version = information.firmware_major * 256U + information.firmware_minor;
+  if (!lidar_model.has_number(information.model) || version > lidar_model.old_firmware.last_version)
+    return lidar_model;
   for (const model& each : detail::old_models) {
-    if (each == which) return each;
+    if (each == lidar_model) return each;
   }
-  return which;
+  return lidar_model;
 }
 // NOLINTEND(bugprone-return-const-ref-from-parameter)
 
-/// The model to which a one-way lidar that identifies itself with `number` belongs instead of `which`; null
-/// if it may be `which`. Several models report 4 and 6, so these numbers contradict no one-way model. Valid
+/// The model to which a one-way lidar that identifies itself with `number` belongs instead of `lidar_model`; null
+/// if it may be `lidar_model`. Several models report 4 and 6, so these numbers contradict no one-way model. Valid
 /// forever. *Pure.*
-[[nodiscard]] constexpr const model* one_way_other_than(const model& which,
+[[nodiscard]] constexpr const model* one_way_other_than(const model& lidar_model,
                                                         std::uint8_t number) noexcept {
-  if (detail::may_report(which, number)) return nullptr;
+  if (detail::may_report(lidar_model, number)) return nullptr;
   const model* found = nullptr;
   for (const model& each : models) {
     if (each.link != link_kind::one_way || !detail::may_report(each, number)) continue;
@@ -327,7 +327,7 @@ inline constexpr auto old_models = [] {
   }
   if (found != nullptr) return found;
   for (const model& each : models) {
-    if (detail::may_report(each, number) && detail::is_read_as(each, which)) return &each;
+    if (detail::may_report(each, number) && detail::is_read_as(each, lidar_model)) return &each;
   }
   return nullptr;
 }

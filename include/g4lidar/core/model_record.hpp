@@ -172,52 +172,52 @@ struct model {
   }
 };
 
-/// Whether `which` measures the intensity of returns. *Pure.*
-[[nodiscard]] constexpr bool has_intensity(const model& which) noexcept {
-  return intensity_bits(which.samples.layout) > 0;
+/// Whether `model` measures the intensity of returns. *Pure.*
+[[nodiscard]] constexpr bool has_intensity(const model& model) noexcept {
+  return intensity_bits(model.samples.layout) > 0;
 }
 
-/// The highest sample rate of `which` in Hz. *Pure.*
-[[nodiscard]] constexpr std::uint32_t highest_rate_hz(const model& which) noexcept {
+/// The highest sample rate of `model` in Hz. *Pure.*
+[[nodiscard]] constexpr std::uint32_t highest_rate_hz(const model& model) noexcept {
   std::uint32_t highest = 0;
-  for (const sample_rate_entry& rate : which.rates.entries) {
+  for (const sample_rate_entry& rate : model.rates.entries) {
     if (rate.hz > highest) highest = rate.hz;
   }
   return highest;
 }
 
 /// The sample rate in Hz that `code` means in the replies to D0 and D1; 0 if it means none. *Pure.*
-[[nodiscard]] constexpr std::uint32_t rate_hz_of_code(const model& which,
+[[nodiscard]] constexpr std::uint32_t rate_hz_of_code(const model& model,
                                                       std::uint8_t code) noexcept {
-  const sample_rate_list& rates = which.rates;
+  const sample_rate_list& rates = model.rates;
   if (code < rates.entries.size()) return rates.entries[code].hz;
   const std::size_t further = code - rates.entries.size();
   return further < rates.further_codes_hz.size() ? rates.further_codes_hz[further] : 0;
 }
 
-/// How many sample rates of `which` are known: 1 to 3. *Pure.*
-[[nodiscard]] constexpr std::uint8_t rate_count(const model& which) noexcept {
+/// How many sample rates of `model` are known: 1 to 3. *Pure.*
+[[nodiscard]] constexpr std::uint8_t rate_count(const model& model) noexcept {
   std::uint8_t count = 0;
-  for (const sample_rate_entry& rate : which.rates.entries) {
+  for (const sample_rate_entry& rate : model.rates.entries) {
     if (rate.hz != 0) ++count;
   }
   return count;
 }
 
-/// The code of a sample rate in the replies to D0 and D1; rate_count() if `which` does not have it. *Pure.*
-[[nodiscard]] constexpr std::uint8_t code_of_rate(const model& which,
+/// The code of a sample rate in the replies to D0 and D1; rate_count() if `model` does not have it. *Pure.*
+[[nodiscard]] constexpr std::uint8_t code_of_rate(const model& model,
                                                   std::uint32_t rate_hz) noexcept {
   std::uint8_t code = 0;
-  for (const sample_rate_entry& rate : which.rates.entries) {
+  for (const sample_rate_entry& rate : model.rates.entries) {
     if (rate.hz == 0 || rate.hz == rate_hz) break;
     ++code;
   }
   return code;
 }
 
-/// The sample rate of `which` to begin with: the nominal one, or the highest if it is not known. *Pure.*
-[[nodiscard]] constexpr std::uint32_t first_rate_hz(const model& which) noexcept {
-  return which.rates.nominal_hz != 0 ? which.rates.nominal_hz : highest_rate_hz(which);
+/// The sample rate of `model` to begin with: the nominal one, or the highest if it is not known. *Pure.*
+[[nodiscard]] constexpr std::uint32_t first_rate_hz(const model& model) noexcept {
+  return model.rates.nominal_hz != 0 ? model.rates.nominal_hz : highest_rate_hz(model);
 }
 
 /// What is known of a sample rate before it is measured: the time from one sample to the next is
@@ -227,49 +227,49 @@ struct expected_rate {
   double tolerance = 0.0;
 };
 
-/// Whether devices like `which` with this sample rate are known that do not have it by their manual. *Pure.* What was
+/// Whether devices like `model` with this sample rate are known that do not have it by their manual. *Pure.* What was
 /// measured is right within 2 %.
-[[nodiscard]] constexpr bool is_seen_rate(const model& which, double hz) noexcept {
-  return which.rates.least_seen_hz != 0 && 100.0 * hz >= 98.0 * which.rates.least_seen_hz &&
-         100.0 * hz <= 102.0 * which.rates.most_seen_hz;
+[[nodiscard]] constexpr bool is_seen_rate(const model& model, double hz) noexcept {
+  return model.rates.least_seen_hz != 0 && 100.0 * hz >= 98.0 * model.rates.least_seen_hz &&
+         100.0 * hz <= 102.0 * model.rates.most_seen_hz;
 }
 
-/// What is known of the sample rate of a device of the model `which`, which is `given_hz` by its reply,
+/// What is known of the sample rate of a device of the model `model`, which is `given_hz` by its reply,
 /// by its model or by the user. A reply is true within 4 %. A device that cannot be asked may have
 /// another firmware than the table: 10 %. Where the table has several rates and the device is not asked,
 /// it is between the lowest and the highest of them, and 10 % beyond. Where owners have seen other rates, it is
 /// between those, and 2 % beyond. *Pure.*
-[[nodiscard]] constexpr expected_rate expected_rate_of(const model& which,
+[[nodiscard]] constexpr expected_rate expected_rate_of(const model& model,
                                                        std::uint32_t given_hz) noexcept {
-  const sample_rate_list& rates = which.rates;
+  const sample_rate_list& rates = model.rates;
   if (rates.is_settable) return {static_cast<double>(given_hz), 0.04};
-  const bool is_seen = is_seen_rate(which, given_hz);
+  const bool is_seen = is_seen_rate(model, given_hz);
   if (rates.nominal_hz != 0 && !is_seen) return {static_cast<double>(given_hz), 0.1};
   const double beyond = is_seen ? 0.02 : 0.1;
   const double lowest_hz = is_seen ? rates.least_seen_hz : rates.entries[0].hz;  // they ascend
-  const double highest_hz = is_seen ? rates.most_seen_hz : highest_rate_hz(which);
+  const double highest_hz = is_seen ? rates.most_seen_hz : highest_rate_hz(model);
   const double shortest_s = 1.0 / ((1.0 + beyond) * highest_hz);
   const double longest_s = 1.0 / ((1.0 - beyond) * lowest_hz);
   return {2.0 / (longest_s + shortest_s), (longest_s - shortest_s) / (longest_s + shortest_s)};
 }
 
-/// The rotation frequency that a zero packet of a lidar like `which` means with `reported_dhz`, both in
+/// The rotation frequency that a zero packet of a lidar like `model` means with `reported_dhz`, both in
 /// 0.1 Hz; 0, not reported, stays 0, and more than a packet can report, 127, counts as that. *Pure.*
 template <class Number>
-[[nodiscard]] constexpr Number true_frequency_dhz(const model& which,
+[[nodiscard]] constexpr Number true_frequency_dhz(const model& model,
                                                   Number reported_dhz) noexcept {
   constexpr Number most = 127;
   if (!(reported_dhz > 0)) return Number{};
-  return (reported_dhz < most ? reported_dhz : most) + which.frequency.ct_offset_dhz;
+  return (reported_dhz < most ? reported_dhz : most) + model.frequency.ct_offset_dhz;
 }
 
-/// The most points of a revolution of `which`: four times those of its highest sample rate at its lowest
+/// The most points of a revolution of `model`: four times those of its highest sample rate at its lowest
 /// frequency, because a motor that spins up is slower; at least 8192. *Pure.*
-[[nodiscard]] constexpr std::size_t largest_scan(const model& which) noexcept {
+[[nodiscard]] constexpr std::size_t largest_scan(const model& model) noexcept {
   constexpr std::uint32_t lowest_dhz_without_command = 40;
-  const std::uint32_t set_dhz = which.frequency.min_dhz;
+  const std::uint32_t set_dhz = model.frequency.min_dhz;
   const std::uint32_t lowest_dhz = set_dhz != 0 ? set_dhz : lowest_dhz_without_command;
-  const std::size_t most = std::size_t{4} * 10 * highest_rate_hz(which) / lowest_dhz;
+  const std::size_t most = std::size_t{4} * 10 * highest_rate_hz(model) / lowest_dhz;
   return most < 8192 ? 8192 : most;
 }
 
@@ -289,13 +289,13 @@ template <class Number>
   return layout == whole_mm || layout == intensity_16 ? largest_word : 16383.0F;
 }
 
-/// The shortest range of `which` at this sample rate in millimetres, by the manufacturer. *Pure.*
-[[nodiscard]] constexpr std::uint16_t shortest_range_mm(const model& which,
+/// The shortest range of `model` at this sample rate in millimetres, by the manufacturer. *Pure.*
+[[nodiscard]] constexpr std::uint16_t shortest_range_mm(const model& model,
                                                         std::uint32_t rate_hz) noexcept {
-  for (const sample_rate_entry& rate : which.rates.entries) {
+  for (const sample_rate_entry& rate : model.rates.entries) {
     if (rate.hz == rate_hz && rate.shortest_mm != 0) return rate.shortest_mm;
   }
-  return which.range.min_mm;
+  return model.range.min_mm;
 }
 
 }  // namespace g4lidar

@@ -36,17 +36,17 @@ class reply_watch {
     std::optional<zero_angle> zero;  ///< The answer to command 93.
   };
 
-  /// Passes a response of a lidar like `which`.
-  [[nodiscard]] constexpr finding take(const response_view& heard, const model& which) noexcept {
+  /// Passes a response of a lidar like `model`.
+  [[nodiscard]] constexpr finding take(const response_view& heard, const model& model) noexcept {
     const bool is_certain =
-        std::exchange(is_behind_header_, false) || !may_be_frequency(heard, which);
+        std::exchange(is_behind_header_, false) || !may_be_frequency(heard, model);
     is_behind_header_ = heard.kind() == response_kind::scan_started;
     finding made;
     if (const auto who = heard.as_device_info()) {
       const bool is_first = !std::exchange(is_known_, true);
       if (is_first || last_ == command::device_info) made.firmware = who;
     }
-    if (last_ ? *last_ == command::zero_angle : is_certain) made.zero = zero_angle_of(heard, which);
+    if (last_ ? *last_ == command::zero_angle : is_certain) made.zero = zero_angle_of(heard, model);
     return made;
   }
   /// Passes any other event.

@@ -43,16 +43,16 @@ class scan_assembler {
  public:
   /// Fills scans into `storage`, which the caller owns and which outlives this object. Its size
   /// limits a scan: 9 kHz at 5 Hz makes 1,800 points. Not empty.
-  /// The scans are of a lidar of the model `which`, which is valid as long as they are.
+  /// The scans are of a lidar of the model `model`, which is valid as long as they are.
   explicit constexpr scan_assembler(std::span<point> storage,
-                                    const model& which = g4_model) noexcept
-      : storage_(storage), sample_rate_hz_(first_rate_hz(which)) {
+                                    const model& model = g4_model) noexcept
+      : storage_(storage), sample_rate_hz_(first_rate_hz(model)) {
     assert(!storage.empty());
-    scan_.model = &which;
+    scan_.model = &model;
   }
 
-  /// The next scans are of a lidar like `which`, which is valid as long as they are.
-  constexpr void become(const model& which) noexcept { scan_.model = &which; }
+  /// The next scans are of a lidar like `model`, which is valid as long as they are.
+  constexpr void become(const model& model) noexcept { scan_.model = &model; }
 
   /// The nominal sample rate of the next packets, for the scans.
   constexpr void set_sample_rate(std::uint32_t hz) noexcept { sample_rate_hz_ = hz; }

@@ -51,22 +51,22 @@ namespace g4lidar {
 /// (protocol: Commands; The stream)
 class session {
  public:
-  /// In the state rest; nothing is known about the device but that it is like `which`, which must be
+  /// In the state rest; nothing is known about the device but that it is like `model`, which must be
   /// valid as long as the session.
   explicit constexpr session(const session_times& times = session_times(),
-                             const model& which = g4_model) noexcept
-      : which_(&which), channel_(times) {}
+                             const model& model = g4_model) noexcept
+      : which_(&model), channel_(times) {}
 
   /// Begins a request, or returns why it is refused. The first request after the connection was
   /// opened stops the device, which may be scanning.
   [[nodiscard]] constexpr std::optional<refusal> begin(
       const request& wanted, std::int64_t now_ns,
-      while_scanning how = while_scanning::refuse) noexcept {
+      while_scanning if_scanning = while_scanning::refuse) noexcept {
     if (!has_request(*which_, wanted.what)) return refusal::not_supported;
     if (!is_possible(wanted, *which_)) return refusal::bad_setting;
     if (is_busy()) return refusal::busy;
     const bool disturbs = wanted.what != request_kind::start && wanted.what != request_kind::stop;
-    if (scanning_ && disturbs && how == while_scanning::refuse) return refusal::scanning;
+    if (scanning_ && disturbs && if_scanning == while_scanning::refuse) return refusal::scanning;
     request_.begin(wanted, detail::saturating_add(now_ns, channel_.times().request_ns), *which_);
     starts_ = 0;
     watch_.forget_restarts();
@@ -165,10 +165,10 @@ class session {
   [[nodiscard]] constexpr std::uint64_t retries() const noexcept { return request_.retries(); }
 
   /// The connection was opened again: nothing is known about the device, and no request is in
-  /// progress. `which`, if it is not null, is what it is like from now on; valid as long as the session. With `goes_on`
+  /// progress. `model`, if it is not null, is what it is like from now on; valid as long as the session. With `goes_on`
   /// that is all that changes.
-  constexpr void reset(const model* which = nullptr, bool goes_on = false) noexcept {
-    if (which != nullptr) which_ = which;
+  constexpr void reset(const model* model = nullptr, bool goes_on = false) noexcept {
+    if (model != nullptr) which_ = model;
     if (goes_on) return;
     request_course request = request_;
     request.reset();
@@ -206,9 +206,9 @@ class session {
     }
   }
 
-  constexpr void end(verdict how, const answer& value, std::int64_t now_ns) noexcept {
-    request_.decide(how, value);
-    if (how == verdict::timed_out) {
+  constexpr void end(verdict end, const answer& value, std::int64_t now_ns) noexcept {
+    request_.decide(end, value);
+    if (end == verdict::timed_out) {
       is_idle_ = false;
       channel_.question().doubt_all();
     }

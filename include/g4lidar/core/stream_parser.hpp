@@ -60,12 +60,12 @@ struct front {
 
 /// Whether `data[at]`, with the next byte if it is available, may start one of these. Others
 /// are noise. *Pure.*
-[[nodiscard]] constexpr bool may_be_start(bytes data, std::size_t at) noexcept {
-  const std::uint8_t first = data[at];
+[[nodiscard]] constexpr bool may_be_start(bytes data, std::size_t offset) noexcept {
+  const std::uint8_t first = data[offset];
   if (first != packet_start[0] && first != response_start[0]) return false;
-  if (at + 1 == data.size()) return true;
-  if (first == response_start[0]) return data[at + 1] == response_start[1];
-  return data[at + 1] == packet_start[1] || data[at + 1] == time_packet_start[1];
+  if (offset + 1 == data.size()) return true;
+  if (first == response_start[0]) return data[offset + 1] == response_start[1];
+  return data[offset + 1] == packet_start[1] || data[offset + 1] == time_packet_start[1];
 }
 
 namespace detail {

@@ -157,8 +157,8 @@ constexpr float mean_step_deg(std::span<const point> points) noexcept {
 class sample_spacing {
  public:
   /// Until a revolution has passed it is that of the model at 7 revolutions per second.
-  explicit constexpr sample_spacing(const model& which) noexcept
-      : step_deg_(7.0F * 360.0F / static_cast<float>(first_rate_hz(which))) {}
+  explicit constexpr sample_spacing(const model& model) noexcept
+      : step_deg_(7.0F * 360.0F / static_cast<float>(first_rate_hz(model))) {}
 
   /// The next points of the stream, in the order of measurement.
   constexpr void add(std::span<const point> points) noexcept {

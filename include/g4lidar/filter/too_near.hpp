@@ -29,12 +29,12 @@ struct near_limits {
 
   /// `shortest_mm`, or that of the model at `sample_rate_hz`; for a rate that it does not have that at
   /// its usual rate. *Pure.*
-  [[nodiscard]] constexpr float shortest_mm_of(const model& which,
+  [[nodiscard]] constexpr float shortest_mm_of(const model& model,
                                                std::uint32_t sample_rate_hz = 0) const noexcept {
     if (shortest_mm > 0.0F) return shortest_mm;
-    const bool has_rate = code_of_rate(which, sample_rate_hz) < rate_count(which);
+    const bool has_rate = code_of_rate(model, sample_rate_hz) < rate_count(model);
     return static_cast<float>(
-        shortest_range_mm(which, has_rate ? sample_rate_hz : first_rate_hz(which)));
+        shortest_range_mm(model, has_rate ? sample_rate_hz : first_rate_hz(model)));
   }
 };
 
@@ -51,15 +51,15 @@ class near_history {
   /// Adds the next point in the order of measurement, which deskew() has not changed. Returns whether
   /// it has no return although a near return came from its direction, within `limits`, and none that
   /// is farther since then.
-  constexpr bool add(const point& p, const near_limits& limits, const model& which = g4_model,
+  constexpr bool add(const point& p, const near_limits& limits, const model& model = g4_model,
                      std::uint32_t sample_rate_hz = 0) noexcept {
     // The angle of the head, as a near and a far target on the same beam have different directions.
     const auto direction =
-        detail::saturated<std::uint32_t>(raw_angle_deg(p, which.samples.correction));
+        detail::saturated<std::uint32_t>(raw_angle_deg(p, model.samples.correction));
     std::uint32_t& last = near_[direction % directions];
     if (!p.is_no_return()) {
       last =
-          p.range_mm < 2.0F * limits.shortest_mm_of(which, sample_rate_hz) ? p.revolution + 1 : 0;
+          p.range_mm < 2.0F * limits.shortest_mm_of(model, sample_rate_hz) ? p.revolution + 1 : 0;
       return false;
     }
     if (last > p.revolution + 1) last = 0;  // of an earlier stream
@@ -75,7 +75,7 @@ class near_history {
 /// Flags as point_flags::may_be_too_near the points without return in directions where, in the last
 /// `limits.revolutions` revolutions, a return came from less than twice the shortest range, and none
 /// that is farther since then. Clears that flag on all other points, and returns the number of flagged
-/// ones. The lidar is like `which`, and measures with `sample_rate_hz` (scan::sample_rate_hz; 0: its usual
+/// ones. The lidar is like `model`, and measures with `sample_rate_hz` (scan::sample_rate_hz; 0: its usual
 /// rate). `points`: all points of the lidar in the order of measurement, in pieces of any size, before
 /// they are filtered or deskewed; other marks do not change the result. *Never allocates.*
 ///
@@ -100,11 +100,11 @@ class near_history {
 /// (tests/core/too_near_test.cpp counts them. Of a pole its edges are missed, which grow into
 /// directions where the wall behind it was seen.)
 constexpr std::size_t mark_near(std::span<point> points, near_history& history,
-                                const near_limits& limits = {}, const model& which = g4_model,
+                                const near_limits& limits = {}, const model& model = g4_model,
                                 std::uint32_t sample_rate_hz = 0) noexcept {
   std::size_t marked = 0;
   for (point& p : points) {
-    const bool found = history.add(p, limits, which, sample_rate_hz);
+    const bool found = history.add(p, limits, model, sample_rate_hz);
     p.flags = found ? p.flags | point_flags::may_be_too_near
                     : without(p.flags, point_flags::may_be_too_near);
     marked += found ? 1U : 0U;
@@ -115,9 +115,9 @@ constexpr std::size_t mark_near(std::span<point> points, near_history& history,
 /// The same on a copy of all `points` at the front of `out`, which is at least as long.
 constexpr std::size_t mark_near(std::span<const point> points, std::span<point> out,
                                 near_history& history, const near_limits& limits = {},
-                                const model& which = g4_model,
+                                const model& model = g4_model,
                                 std::uint32_t sample_rate_hz = 0) noexcept {
-  return mark_near(detail::copy_points(points, out), history, limits, which, sample_rate_hz);
+  return mark_near(detail::copy_points(points, out), history, limits, model, sample_rate_hz);
 }
 
 }  // namespace g4lidar

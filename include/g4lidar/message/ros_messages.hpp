@@ -62,27 +62,27 @@ struct message_schema {
 /// Fills `ranges_m`, not empty, with `points` for a LaserScan in the order of time, as fill_grid() does
 /// in the vendor's frame, and returns its first_bin: that of the mean direction from which the
 /// returns began. Points at the begin or the end of the revolution whose bin is at the other end, so that
-/// its time would be wrong by a revolution, are left out. `how`, but for its frame, and
+/// its time would be wrong by a revolution, are left out. `options`, but for its frame, and
 /// `intensities` are as for fill_grid(). *Never allocates.*
 [[nodiscard]] G4LIDAR_API std::size_t fill_time_grid(std::span<const point> points,
                                                      std::int64_t duration_ns,
                                                      std::span<float> ranges_m,
-                                                     grid_options how = {},
+                                                     grid_options options = {},
                                                      std::span<float> intensities = {}) noexcept;
 /// The same for the points of a scan, with its duration and the longest range of its model.
 [[nodiscard]] inline std::size_t fill_time_grid(const scan& source, std::span<float> ranges_m,
-                                                const grid_options& how = {},
+                                                const grid_options& options = {},
                                                 std::span<float> intensities = {}) noexcept {
-  return fill_time_grid(source.points, source.duration_ns, ranges_m, how.with(*source.model),
+  return fill_time_grid(source.points, source.duration_ns, ranges_m, options.with(*source.model),
                         intensities);
 }
 
 /// Fills `ranges_m` and `intensities` for a LaserScan of `source` in header.order: with `bins` ranges, at least one, as
 /// fill_grid() or fill_time_grid() does, and with as many intensities if the model has them. Sets header.first_bin,
-/// header.longest_mm to that of `how`, limited by the model, and header.intensities, which views `intensities`.
+/// header.longest_mm to that of `options`, limited by the model, and header.intensities, which views `intensities`.
 /// Allocates beyond the capacities.
 G4LIDAR_API void fill_laser_scan(const scan& source, message_header& header, std::size_t bins,
-                                 const grid_options& how, std::vector<float>& ranges_m,
+                                 const grid_options& options, std::vector<float>& ranges_m,
                                  std::vector<float>& intensities);
 
 /// The numbers of a LaserScan beside its ranges and intensities, for programs that fill a message of ROS themselves.
@@ -131,9 +131,9 @@ struct cloud_field {
   std::uint8_t datatype;
 };
 /// The fields of put_point_cloud2() for points of this model. *Pure.* Valid forever.
-[[nodiscard]] G4LIDAR_API std::span<const cloud_field> cloud_fields(const model& of) noexcept;
+[[nodiscard]] G4LIDAR_API std::span<const cloud_field> cloud_fields(const model& model) noexcept;
 /// The bytes of a point with these fields. *Pure.*
-[[nodiscard]] G4LIDAR_API std::uint32_t cloud_point_size(const model& of) noexcept;
+[[nodiscard]] G4LIDAR_API std::uint32_t cloud_point_size(const model& model) noexcept;
 /// Appends the `data` of put_point_cloud2() to `out`. Allocates beyond the capacity of `out`.
 G4LIDAR_API void put_cloud_points(std::span<const point> points, const message_header& header,
                                   std::vector<std::uint8_t>& out);

@@ -167,23 +167,24 @@ struct parameter_limits {
 /// "Shortest range that is kept, m": the text with unit, details, and what is used where it is not given. *Allocates.*
 [[nodiscard]] G4LIDAR_API std::string description_of(const parameter& of);
 /// The values with a lidar of this model, which may not have the setting; null: with those of all models. *Allocates.*
-[[nodiscard]] G4LIDAR_API parameter_limits limits_of(const parameter& of,
-                                                     const model* which = nullptr);
+[[nodiscard]] G4LIDAR_API parameter_limits limits_of(const parameter& parameter,
+                                                     const model* model = nullptr);
 /// Its name on the command line: "--near-as". *Allocates.*
 [[nodiscard]] G4LIDAR_API std::string flag_of(const parameter& of);
 
 /// The value as one of a type, the index in parameter_value, as people write it: 10 or "10" for 10.0, "on" or "true" for
 /// true, true or "true" for "on", an infinite number for "inf". Nothing if it is none. *Allocates.*
-[[nodiscard]] G4LIDAR_API parameter_value converted(const parameter_value& from, std::uint8_t type);
+[[nodiscard]] G4LIDAR_API parameter_value converted(const parameter_value& value,
+                                                    std::uint8_t type);
 /// The value of a setting as the device gave it; nothing for an answer that is of none.
 [[nodiscard]] G4LIDAR_API parameter_value value_of(const answer& given);
 /// The value that a setting is to have; errors as those of value_in().
-[[nodiscard]] G4LIDAR_API result<answer> answer_of(const setting_info& of,
+[[nodiscard]] G4LIDAR_API result<answer> answer_of(const setting_info& setting,
                                                    const parameter_value& wanted,
-                                                   const model* which = nullptr);
+                                                   const model* model = nullptr);
 /// Sets an option of opening. Returns why the value is not valid, without its name, and then changes nothing; empty if
 /// it is set. *Allocates.*
-[[nodiscard]] G4LIDAR_API std::string set_option(lidar_options& into, const parameter& which,
+[[nodiscard]] G4LIDAR_API std::string set_option(lidar_options& into, const parameter& parameter,
                                                  const parameter_value& value);
 
 }  // namespace g4lidar

@@ -44,7 +44,7 @@ class G4LIDAR_API bulk_decoder {
   /// Uses `wanted` if this processor has it, else `portable`.
   explicit bulk_decoder(instruction_set wanted = best_instruction_set()) noexcept;
   /// For packets of this model, which is valid as long as this.
-  explicit bulk_decoder(const model& which,
+  explicit bulk_decoder(const model& model,
                         instruction_set wanted = best_instruction_set()) noexcept;
 
   /// Takes bytes from the front of `input`, writes their points to the front of `out` and returns
@@ -73,7 +73,7 @@ class G4LIDAR_API bulk_decoder {
   /// Bytes of an unfinished packet or response.
   [[nodiscard]] std::size_t held() const noexcept { return parser_.held(); }
   /// What is added to each angle, of a model that has such an offset: what the bytes state, or what is set here with
-  /// zero_offset::known_by::user.
+  /// zero_offset::stated_by::user.
   [[nodiscard]] zero_offset& zero() noexcept { return zero_; }
   /// The same.
   [[nodiscard]] const zero_offset& zero() const noexcept { return zero_; }

@@ -119,17 +119,17 @@ class stream_head {
 /// `is_cancelled` is called at least once for each 64 KiB of a regular file, by the thread that reads, if
 /// it is set: while it returns true, reading fails with cancelled.
 ///
-/// `which`: what sent the bytes; valid as long as the connector. Null: recognised_in() of a regular
+/// `model`: what sent the bytes; valid as long as the connector. Null: recognised_in() of a regular
 /// file. Of everything else the first bytes are read while it is opened, as stream_head states: so this
 /// waits until the lidar sends, at most 10 s, and up to 1 s longer; `is_cancelled` ends it: with cancelled if nothing has
 /// been read, else what was read decides.
 ///
-/// Fails with bad_option and system; and where `which` is null, for text with bad_file, and for the frames of another
+/// Fails with bad_option and system; and where `model` is null, for text with bad_file, and for the frames of another
 /// maker with other_device. Reading fails with bad_file if a pipe contains a recording.
 [[nodiscard]] G4LIDAR_API result<std::unique_ptr<connector>> open_raw_bytes(
     const std::string& path, std::optional<std::uint32_t> sample_rate_hz,
     const playback_options& options = {}, std::function<bool()> is_cancelled = {},
-    const model* which = nullptr);
+    const model* model = nullptr);
 
 /// What sent the bytes in the regular file at `path`, or in that from which standard input comes for
 /// "-": what layout_recogniser finds in the first 64 KiB, and in up to 1 MiB until the size of a

@@ -160,7 +160,7 @@ class G4LIDAR_API recording_writer {
   [[nodiscard]] std::string_view path() const noexcept;
 
  private:
-  friend result<std::unique_ptr<connector>> recorded(std::unique_ptr<connector> from,
+  friend result<std::unique_ptr<connector>> recorded(std::unique_ptr<connector> connector,
                                                      recording_writer& into);
   class G4LIDAR_HIDDEN file_writer;
   template <class Call>
@@ -169,13 +169,13 @@ class G4LIDAR_API recording_writer {
   std::unique_ptr<file_writer> made_;
 };
 
-/// `from`, with recording: the bytes that are read and sent, and when its transports open and
+/// `connector`, with recording: the bytes that are read and sent, and when its transports open and
 /// break. The writer must outlive the result; it may be moved, and must be used by the
 /// same thread. Recording a replayed recording gives an equal recording. Fails with bad_option if
-/// `from` states another model than the options of the writer, or than what it has recorded, or plays the file that
+/// `connector` states another model than the options of the writer, or than what it has recorded, or plays the file that
 /// is to be replaced; with system.
 [[nodiscard]] G4LIDAR_API result<std::unique_ptr<connector>> recorded(
-    std::unique_ptr<connector> from, recording_writer& into);
+    std::unique_ptr<connector> connector, recording_writer& into);
 
 class recording_writer;
 

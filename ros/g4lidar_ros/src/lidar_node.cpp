@@ -160,10 +160,10 @@ void LidarNode::allow(bool runs, trigger::Response& answer) {
     answer.message = "the motor turns";
 }
 
-void LidarNode::allow(bool runs, const std::string& by) {
+void LidarNode::allow(bool runs, const std::string& cause) {
   trigger::Response answer;
   allow(runs, answer);
-  RCLCPP_INFO(get_logger(), "%s: %s", by.c_str(), answer.message.c_str());
+  RCLCPP_INFO(get_logger(), "%s: %s", cause.c_str(), answer.message.c_str());
 }
 
 }  // namespace g4lidar_ros

@@ -44,7 +44,7 @@ lidar_session::lidar_session(rclcpp_lifecycle::LifecycleNode& node, lidar_topics
     guard(node_, [&] { made = ahead_by(*clock, wall_ahead_ns); });
     return made;
   };
-  how.other_odometry = std::bind_front(&robot_motion::take, &motion_);
+  how.other_odometry = std::bind_front(&odometry_publisher::take, &motion_);
   constexpr auto by = g4lidar::delivery::in_reader;
   auto made =
       g4lidar::lidar_service::make(options_.lidars, std::move(how), {{&motion_, by}, {this, by}});
@@ -209,10 +209,10 @@ void lidar_session::on_scan(const g4lidar::service_scan& made) {
   });
 }
 
-void lidar_session::on_event(std::size_t lidar, const g4lidar::lidar_event& what,
+void lidar_session::on_event(std::size_t lidar, const g4lidar::lidar_event& event,
                              std::int64_t /*stamp_ns*/) {
   RCLCPP_INFO(node_.get_logger(), "%s",
-              named(lidar, "event: " + std::string(g4lidar::name_of(what.what))).c_str());
+              named(lidar, "event: " + std::string(g4lidar::name_of(event.what))).c_str());
 }
 
 void lidar_session::on_state(std::size_t lidar, reader_state state,

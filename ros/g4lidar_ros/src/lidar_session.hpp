@@ -15,7 +15,7 @@
 #include <rclcpp_lifecycle/lifecycle_node.hpp>
 
 #include "g4lidar/lidar_service.hpp"
-#include "robot_motion.hpp"
+#include "odometry_publisher.hpp"
 #include "topics.hpp"
 
 namespace g4lidar_ros {
@@ -70,7 +70,7 @@ class lidar_session final : private g4lidar::service_sink {
   void on_open(std::size_t lidar, g4lidar::lidar& device) override;
   void on_values(std::size_t lidar, const std::string& refused) override;
   void on_scan(const g4lidar::service_scan& made) override;
-  void on_event(std::size_t lidar, const g4lidar::lidar_event& what,
+  void on_event(std::size_t lidar, const g4lidar::lidar_event& event,
                 std::int64_t stamp_ns) override;
   void on_state(std::size_t lidar, g4lidar::reader_state state,
                 const std::optional<g4lidar::error>& why) override;
@@ -90,7 +90,7 @@ class lidar_session final : private g4lidar::service_sink {
   lidar_topics& topics_;
   session_options options_;
   const bool is_file_;
-  robot_motion motion_;
+  odometry_publisher motion_;
   std::atomic<bool> is_standby_ = false;
   std::atomic<bool> is_news_ = false;
   std::mutex mutex_;

@@ -84,9 +84,10 @@ std::vector<std::pair<std::string, std::string>> named_words(const rclcpp::Param
 }
 
 /// What the lidar is to be set to; nothing: to nothing. Throws std::invalid_argument with the possible values.
-g4lidar::parameter_value wanted_in(const g4lidar::parameter& of, const rclcpp::Parameter& given) {
-  if (given.get_parameter_value() == shown(of, {})) return {};
-  const auto made = g4lidar::answer_of(*of.setting, value_of(given.get_parameter_value()));
+g4lidar::parameter_value wanted_in(const g4lidar::parameter& parameter,
+                                   const rclcpp::Parameter& given) {
+  if (given.get_parameter_value() == shown(parameter, {})) return {};
+  const auto made = g4lidar::answer_of(*parameter.setting, value_of(given.get_parameter_value()));
   if (!made) throw std::invalid_argument(std::string(made.error().subject()));
   return g4lidar::value_of(*made);
 }

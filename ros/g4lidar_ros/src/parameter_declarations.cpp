@@ -18,21 +18,21 @@ using descriptor = rcl_interfaces::msg::ParameterDescriptor;
 using value = rclcpp::ParameterValue;
 
 /// As ROS describes a row. `of_model`: the limits of a lidar's model.
-descriptor described(const g4lidar::parameter& of, const g4lidar::parameter_limits& limits) {
-  const bool is_setting = of.setting != nullptr;
+descriptor described(const g4lidar::parameter& parameter, const g4lidar::parameter_limits& limits) {
+  const bool is_setting = parameter.setting != nullptr;
   descriptor made;
-  made.name = node_name(of);
-  made.description = g4lidar::description_of(of);
+  made.name = node_name(parameter);
+  made.description = g4lidar::description_of(parameter);
   made.additional_constraints = limits.constraints;
-  made.read_only = of.kind == g4lidar::parameter_kind::read_only;
+  made.read_only = parameter.kind == g4lidar::parameter_kind::read_only;
   // Humble converts a value after the types are compared.
   made.dynamic_typing = !made.read_only && !RCLCPP_VERSION_GTE(21, 0, 0);
   if (is_setting) made.additional_constraints += "; 0 or empty: as the lidar has it";
   const auto [least, most, step] = limits.range;
   if (!(least < most)) return made;
-  const bool has_none = is_setting || !of.unset.empty();  // which is 0
+  const bool has_none = is_setting || !parameter.unset.empty();  // which is 0
   if (is_setting) made.additional_constraints += "; " + sector_text(least, most);
-  if (of.type == rclcpp::PARAMETER_INTEGER) {
+  if (parameter.type == rclcpp::PARAMETER_INTEGER) {
     made.integer_range.resize(1);
     made.integer_range[0].from_value = has_none ? 0 : static_cast<std::int64_t>(least);
     made.integer_range[0].to_value = static_cast<std::int64_t>(most);
@@ -76,7 +76,7 @@ std::string sectors_in(const value& from) {
   return made;
 }
 
-value value_or(const g4lidar::parameter_value& from, const value& otherwise) {
+value value_or(const g4lidar::parameter_value& given, const value& otherwise) {
   return std::visit(
       [&]<class Value>(const Value& one) {
         if constexpr (std::is_same_v<Value, std::monostate>)
@@ -84,7 +84,7 @@ value value_or(const g4lidar::parameter_value& from, const value& otherwise) {
         else
           return value(one);
       },
-      from);
+      given);
 }
 
 }  // namespace
@@ -129,10 +129,10 @@ std::string node_name(const g4lidar::parameter& of) {
   return std::string(of.node_name.empty() ? of.name : of.node_name);
 }
 
-rclcpp::ParameterValue converted(const value& from, rclcpp::ParameterType to) {
-  const std::string sectors = to == rclcpp::PARAMETER_STRING ? sectors_in(from) : "";
+rclcpp::ParameterValue converted(const value& given, rclcpp::ParameterType to) {
+  const std::string sectors = to == rclcpp::PARAMETER_STRING ? sectors_in(given) : "";
   if (!sectors.empty()) return value(sectors);
-  return value_or(g4lidar::converted(value_of(from), static_cast<std::uint8_t>(to)), from);
+  return value_or(g4lidar::converted(value_of(given), static_cast<std::uint8_t>(to)), given);
 }
 
 g4lidar::parameter_value value_of(const value& from) {
@@ -160,10 +160,11 @@ bool has_state(const g4lidar::parameter& of) {
   return of.setting != nullptr || of.name == "serial_number";
 }
 
-rclcpp::ParameterValue shown(const g4lidar::parameter& of, const g4lidar::parameter_value& known) {
-  const value nothing = of.type == rclcpp::PARAMETER_INTEGER  ? value(0)
-                        : of.type == rclcpp::PARAMETER_DOUBLE ? value(0.0)
-                                                              : value("");
+rclcpp::ParameterValue shown(const g4lidar::parameter& parameter,
+                             const g4lidar::parameter_value& known) {
+  const value nothing = parameter.type == rclcpp::PARAMETER_INTEGER  ? value(0)
+                        : parameter.type == rclcpp::PARAMETER_DOUBLE ? value(0.0)
+                                                                     : value("");
   return value_or(g4lidar::converted(known, nothing.get_type()), nothing);
 }
 

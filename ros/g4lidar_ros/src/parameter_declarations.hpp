@@ -18,7 +18,7 @@ void declare_parameters(rclcpp_lifecycle::LifecycleNode& node);
 /// The value without one that is given: the filters keep everything, and nothing is set.
 [[nodiscard]] rclcpp::ParameterValue first_value(const g4lidar::parameter& of);
 /// The value with this type, as g4lidar::converted(); of an array for a text "30:40 90:100"; as it is if that cannot be.
-[[nodiscard]] rclcpp::ParameterValue converted(const rclcpp::ParameterValue& from,
+[[nodiscard]] rclcpp::ParameterValue converted(const rclcpp::ParameterValue& value,
                                                rclcpp::ParameterType to);
 /// Nothing for arrays.
 [[nodiscard]] g4lidar::parameter_value value_of(const rclcpp::ParameterValue& from);
@@ -30,7 +30,7 @@ inline constexpr std::string_view state_prefix = "device.";
 /// Whether the lidar has a state of it: the settings and the serial number.
 [[nodiscard]] bool has_state(const g4lidar::parameter& of);
 /// The value of a setting or of a state. On and off are texts; nothing is 0 or empty: not wanted, or not known.
-[[nodiscard]] rclcpp::ParameterValue shown(const g4lidar::parameter& of,
+[[nodiscard]] rclcpp::ParameterValue shown(const g4lidar::parameter& parameter,
                                            const g4lidar::parameter_value& value);
 
 }  // namespace g4lidar_ros

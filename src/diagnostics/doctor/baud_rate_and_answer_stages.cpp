@@ -21,14 +21,14 @@ constexpr std::int64_t samples_ns = 3'000 * ms;
 
 /// A remark if the bridge cannot make the wanted rate, or if the lidar has not that of its model.
 void add_rate_difference(stage_report& report, std::uint32_t real, std::uint32_t given,
-                         const model& which) {
+                         const model& model) {
   constexpr std::uint64_t remarkable = 15;  // in thousandths
   if (real == 0 || !report.remark.empty()) return;
   const auto is_near = [real](std::uint32_t own) { return own != 0 && is_tolerable(real, own); };
-  const auto* const own = std::ranges::find_if(which.bauds, is_near);
-  if (given == 0 && own == which.bauds.end()) {
+  const auto* const own = std::ranges::find_if(model.bauds, is_near);
+  if (given == 0 && own == model.bauds.end()) {
     report.remark =
-        "Usually " + one_of(which) + " has " + std::to_string(which.bauds[0]) + " baud.";
+        "Usually " + one_of(model) + " has " + std::to_string(model.bauds[0]) + " baud.";
     return;
   }
   const std::uint32_t wanted = given != 0 ? given : *own;

@@ -115,9 +115,9 @@ class port_stages {
     report_unopened(log_, report_, why);
     return nullptr;
   }
-  bool give_up(problem what, const std::string& path, int reason,
+  bool give_up(problem code, const std::string& path, int reason,
                error_detail detail = error_detail::usual) {
-    return give_up(error(task::opening, what, path, reason, detail)) != nullptr;
+    return give_up(error(task::opening, code, path, reason, detail)) != nullptr;
   }
 
   bool look_at_port(port_info& port) {
@@ -234,8 +234,8 @@ std::vector<stage_report> diagnose(std::unique_ptr<transport> opened,
   return std::move(log.stages());
 }
 
-std::vector<stage_report> diagnose(connector& from, const diagnostic_options& options) {
-  auto opened = from.connect();
+std::vector<stage_report> diagnose(connector& connector, const diagnostic_options& options) {
+  auto opened = connector.connect();
   if (opened) return diagnose(std::move(*opened), options);
   stage_log log(options);
   report_unopened(log, {}, opened.error());

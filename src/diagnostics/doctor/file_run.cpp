@@ -29,8 +29,8 @@ bool is_stop(bytes sent) noexcept {
 
 class file_run {
  public:
-  file_run(stage_log& log, const model& which)
-      : log_(log), model_(which), splitter_(which.samples), stated_(which, true) {}
+  file_run(stage_log& log, const model& model)
+      : log_(log), model_(model), splitter_(model.samples), stated_(model, true) {}
 
   /// `wrong`: why it is not read.
   void run(const std::string& path, const std::optional<error>& wrong) {
@@ -130,8 +130,8 @@ class file_run {
   void take(bytes data, std::int64_t arrival_ns) {
     // Before a scan runs, silence is not a stall; only recordings show how long it lasted.
     const bool follows = is_judging_ && arrival_ns > 0 && arrival_ns_ > 0;
-    measured_.take(reading{data.size(), arrival_ns,
-                           follows ? detail::saturating_sub(arrival_ns, arrival_ns_) : 0});
+    measured_.take(timed_read{data.size(), arrival_ns,
+                              follows ? detail::saturating_sub(arrival_ns, arrival_ns_) : 0});
     arrival_ns_ = arrival_ns;
     survey_.received(data);
     splitter_.take(data, arrival_ns, to_);

@@ -49,7 +49,8 @@ class first_contact {
   };
 
   /// `may_pulse_dtr`: as in search_options.
-  first_contact(parts of, bool may_pulse_dtr) noexcept : of_(of), may_pulse_dtr_(may_pulse_dtr) {}
+  first_contact(parts used, bool may_pulse_dtr) noexcept
+      : of_(used), may_pulse_dtr_(may_pulse_dtr) {}
 
   /// Searches, and asks what was found. All queries are asked if the first is answered. `baud` is the stage baud_rate.
   [[nodiscard]] state make(stage_report& baud);

@@ -63,7 +63,7 @@ live_run::scan_state live_run::listen_once(stream_statistics& measured) {
     measured.take(observed);
     follow(observed);
   };
-  to.arrival = [&](const reading& observed) { measured.take(observed); };
+  to.arrival = [&](const timed_read& observed) { measured.take(observed); };
   if (keeps_alive_ && link_.now_ns() >= started_.kept_alive_ns + times.keep_alive_ns) {
     link_.send(command::start);
     started_.kept_alive_ns = link_.now_ns();
@@ -218,7 +218,7 @@ live_run::fate live_run::fate_of_silent() {
     follow(observed);
     if (link_.counts().packets > before) until_ns = 0;
   };
-  to.arrival = [&](const reading& observed) {
+  to.arrival = [&](const timed_read& observed) {
     if (back_ns == 0) back_ns = observed.arrival_ns;
   };
   link_.listen(until_ns, to);
@@ -300,7 +300,7 @@ bool live_run::restart_scan(std::int64_t& until_ns) {
 
 void live_run::report_stream() {
   if (link_.sample_bytes() != 0) stream_.add("bytes_per_sample", link_.sample_bytes());
-  if (longest_gap_ns_ > 0) measured_.take(reading{0, link_.now_ns(), longest_gap_ns_});
+  if (longest_gap_ns_ > 0) measured_.take(timed_read{0, link_.now_ns(), longest_gap_ns_});
   judge_stream(stream_, measured_, static_cast<double>(measured_ns_) / 1e9);
   if (restarts_ > 0) stream_.add("restarts", restarts_);
   add_failure(stream_);

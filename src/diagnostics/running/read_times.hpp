@@ -48,14 +48,14 @@ class read_times {
   }
 
   /// What is known about the bytes that came. `is_full`: more may be waiting.
-  [[nodiscard]] reading take(std::size_t count, std::int64_t arrival_ns, bool is_full) noexcept {
+  [[nodiscard]] timed_read take(std::size_t count, std::int64_t arrival_ns, bool is_full) noexcept {
     // A program that did not look for bytes finds them; where there are none, the device was silent.
     const auto expected = static_cast<std::size_t>(absence_ns_ / ms) * least_bytes_per_ms;
     const bool is_of_host = count >= std::min(expected, few_bytes);
     (is_of_host ? host_pause_ns_ : silence_ns_) += std::exchange(absence_ns_, 0);
     unread_ns_ = 0;
-    const reading what{count, arrival_ns, std::exchange(silence_ns_, 0),
-                       std::exchange(host_pause_ns_, 0), has_backlog_};
+    const timed_read what{count, arrival_ns, std::exchange(silence_ns_, 0),
+                          std::exchange(host_pause_ns_, 0), has_backlog_};
     has_backlog_ = has_backlog_ && is_full;
     return what;
   }

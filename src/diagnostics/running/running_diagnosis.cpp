@@ -68,7 +68,7 @@ class observed_transport final : public forwarding_transport {
 
  private:
   void take(const received& got, std::span<const std::uint8_t> out, std::int64_t now_ns) noexcept {
-    const reading what = times_.take(got.count, got.arrival_ns, got.count == out.size());
+    const timed_read what = times_.take(got.count, got.arrival_ns, got.count == out.size());
     into_->received(what, bytes(out).first(got.count), now_ns);
   }
 
@@ -78,8 +78,8 @@ class observed_transport final : public forwarding_transport {
 
 class observed_connector final : public forwarding_connector {
  public:
-  observed_connector(std::unique_ptr<connector> from, running_state& into) noexcept
-      : forwarding_connector(std::move(from)), into_(&into) {}
+  observed_connector(std::unique_ptr<connector> opener, running_state& into) noexcept
+      : forwarding_connector(std::move(opener)), into_(&into) {}
 
   [[nodiscard]] result<std::unique_ptr<transport>> connect() noexcept override {
     auto port = inner().connect();

@@ -20,9 +20,9 @@ void running_scan::begin(bool is_device) {
   enter(awaits_start ? phase::rests : phase::starts);
 }
 
-void running_scan::read_as(const model& which) {
-  which_ = &which;
-  measured_ = stream_statistics(which, true);
+void running_scan::read_as(const model& model) {
+  which_ = &model;
+  measured_ = stream_statistics(model, true);
 }
 
 void running_scan::end() {
@@ -77,17 +77,17 @@ void running_scan::sent(bytes data, std::int64_t now_ns, std::int64_t silence_ns
   }
 }
 
-void running_scan::received(const reading& what, bytes data) {
-  reading known = what;
+void running_scan::received(const timed_read& arrived, bytes data) {
+  timed_read known = arrived;
   if (!is_device_) {
-    known.silence_ns = time_ns_ > 0 ? detail::saturating_sub(what.arrival_ns, time_ns_) : 0;
+    known.silence_ns = time_ns_ > 0 ? detail::saturating_sub(arrived.arrival_ns, time_ns_) : 0;
     if (known.silence_ns >= pause_of_file_ns) enter(phase::starts);
   }
-  time_ns_ = what.arrival_ns;
+  time_ns_ = arrived.arrival_ns;
   known.is_backlog |= known.silence_ns >= arrival_statistics::stall_ns;
   silence_ns_ = std::max(silence_ns_, std::exchange(known.silence_ns, 0));
   if (phase_ == phase::runs) measured_.take(known);
-  splitter_.take(data, what.arrival_ns, to_);
+  splitter_.take(data, arrived.arrival_ns, to_);
   if (phase_ != phase::rests) follow_samples(data);
   look();
 }
@@ -123,7 +123,8 @@ void running_scan::take(const observed_event& found) {
     may_have_booted_ = false;
     const std::int64_t silence_ns = std::exchange(silence_ns_, 0);
     // A scan that ends is silent, too: a stall is a silence with packets behind it.
-    if (phase_ == phase::runs && silence_ns > 0) measured_.take(reading{0, time_ns_, silence_ns});
+    if (phase_ == phase::runs && silence_ns > 0)
+      measured_.take(timed_read{0, time_ns_, silence_ns});
     if (phase_ == phase::starts) enter(phase::speeds_up);
   }
   if (phase_ >= phase::speeds_up) measured_.take(found);

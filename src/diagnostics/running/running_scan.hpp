@@ -32,8 +32,8 @@ class running_scan {
     if (options.sample_rate) known_.sample_rate_hz = to_hz(*options.sample_rate);
   }
 
-  /// From the next connection on, the bytes are those of a lidar like `which`. Valid forever.
-  void read_as(const model& which);
+  /// From the next connection on, the bytes are those of a lidar like `model`. Valid forever.
+  void read_as(const model& model);
 
   /// A connection begins, to a device or to a file.
   void begin(bool is_device);
@@ -41,7 +41,7 @@ class running_scan {
   void end();
   /// A command was sent, after so much silence.
   void sent(bytes data, std::int64_t now_ns, std::int64_t silence_ns);
-  void received(const reading& what, bytes data);
+  void received(const timed_read& arrived, bytes data);
 
   [[nodiscard]] const model& which() const noexcept { return *which_; }
   [[nodiscard]] phase now() const noexcept { return phase_; }

@@ -25,11 +25,11 @@ namespace g4lidar {
 class found_diagnoses {
  public:
   found_diagnoses() noexcept { times_.fill(never); }
-  void add(diagnosis what, std::int64_t now_ns) noexcept {
-    times_[static_cast<std::size_t>(what)] = now_ns;
+  void add(diagnosis diagnosis, std::int64_t now_ns) noexcept {
+    times_[static_cast<std::size_t>(diagnosis)] = now_ns;
   }
-  [[nodiscard]] bool has(diagnosis what, std::int64_t since_ns) const noexcept {
-    return times_[static_cast<std::size_t>(what)] >= since_ns;
+  [[nodiscard]] bool has(diagnosis diagnosis, std::int64_t since_ns) const noexcept {
+    return times_[static_cast<std::size_t>(diagnosis)] >= since_ns;
   }
   [[nodiscard]] std::vector<diagnosis> since(std::int64_t since_ns) const {
     std::vector<diagnosis> all;
@@ -51,10 +51,10 @@ class running_state {
       : window_ns_(std::clamp<std::int64_t>(options.window.count(), 1'000 * ms, 3'600'000 * ms)),
         scan_({std::chrono::nanoseconds(window_ns_), options.frequency, options.sample_rate}) {}
 
-  void begin(bool is_device, const recorded_device* recorded, const model& which) {
+  void begin(bool is_device, const recorded_device* recorded, const model& model) {
     const std::lock_guard hold(mutex_);
     is_device_ = is_device;
-    scan_.read_as(which);
+    scan_.read_as(model);
     if (recorded == nullptr) return;
     scan_.known().information = recorded->information;
     if (recorded->frequency) scan_.known().frequency = recorded->frequency;
@@ -80,14 +80,14 @@ class running_state {
     scan_.sent(data, now_ns, silence_ns);
     follow_scan();
   }
-  void received(const reading& what, bytes data, std::int64_t now_ns) {
+  void received(const timed_read& arrived, bytes data, std::int64_t now_ns) {
     const std::lock_guard hold(mutex_);
     now_ns_ = now_ns;
     // A port that gives bytes is there, also where no scan runs.
     if (lost_ && stage_of(*lost_) == diagnostic_stage::port) back();
     if (lost_ == diagnosis::stalls) stall_ns_ = std::max(stall_ns_, silence_ns());
     heard_ns_ = now_ns;
-    scan_.received(what, data);
+    scan_.received(arrived, data);
     follow_scan();
   }
   [[nodiscard]] bool is_device() const noexcept { return is_device_; }

@@ -13,7 +13,7 @@ namespace {
 recorded_event event_of(recorded_event::kind what, std::optional<zero_angle> zero,
                         const auto& samples, connection& played) {
   return {.what = what,
-          .baud = played.on().baud(),
+          .baud = played.port().baud(),
           .sample_rate_hz = samples.rate_hz,
           .time_ns = played.now_ns(),
           .name = played.name(),
@@ -22,12 +22,12 @@ recorded_event event_of(recorded_event::kind what, std::optional<zero_angle> zer
 }
 
 /// Whether the event happened when this much of the read had been processed.
-bool is_here(const recorded_event& what, const event_reader& input) noexcept {
-  switch (what.what) {
+bool is_here(const recorded_event& event, const event_reader& input) noexcept {
+  switch (event.what) {
     case recorded_event::kind::begun:
     case recorded_event::kind::held:
     case recorded_event::kind::cut:
-      return input.unparsed().size() <= what.unparsed && input.events_of_reading() >= what.events;
+      return input.unparsed().size() <= event.unparsed && input.events_of_reading() >= event.events;
     case recorded_event::kind::opened:
     case recorded_event::kind::closed:
     case recorded_event::kind::gap:
@@ -44,8 +44,8 @@ bool is_here(const recorded_event& what, const event_reader& input) noexcept {
 
 }  // namespace
 
-replay_player::replay_player(parts& of, const lidar_options& options)
-    : scan_source(of, options),
+replay_player::replay_player(parts& used, const lidar_options& options)
+    : scan_source(used, options),
       stated_{.identity = identity_reader(*options.model, true)},
       samples_{options.raw_sample_rate_hz.value_or(first_rate_hz(*options.model)),
                options.raw_sample_rate_hz.has_value(),
@@ -53,8 +53,8 @@ replay_player::replay_player(parts& of, const lidar_options& options)
 
 result<void> replay_player::open() {
   if (auto opened = connection_.open(); !opened) return opened;
-  recording_hook* const hook = recording_hook_of(connection_.from());
-  file_ = file_of(connection_.from());
+  recording_hook* const hook = recording_hook_of(connection_.port_connector());
+  file_ = file_of(connection_.port_connector());
   source_ = hook != nullptr ? hook->events() : nullptr;
   if (source_ == nullptr) {
     stated_.recorder = hook;
@@ -64,7 +64,7 @@ result<void> replay_player::open() {
   }
   if (file_ != nullptr) file_->controls().when_moved([this] { follow_seek(); });
   receiver_.reset(0, 0, now_ns());
-  pipeline_.follow(connection_.on().baud());
+  pipeline_.follow(connection_.port().baud());
   stage_ = stage::idle;
   if (source_ == nullptr) return {};
   information_ = source_->device().information;
@@ -149,7 +149,7 @@ result<void> replay_player::advance(std::int64_t deadline_ns) {
   }
   report_long_pause();
   const reading how = receiver_.is_batched() && is_scanning() ? reading::batched : reading::at_once;
-  const auto got = receiver_.receive(connection_.on(), how, pipeline_.input().held(),
+  const auto got = receiver_.receive(connection_.port(), how, pipeline_.input().held(),
                                      pipeline_.input().missing(), deadline_ns);
   if (!got) {
     why_ = got.error();
@@ -171,7 +171,7 @@ void replay_player::follow_samples() {
   const stream_samples seen = pipeline_.input().other();
   const recognition now = recognised_.get();
   if (seen.bytes == 0 || now.by == known_by::user) return;
-  const std::uint32_t baud = connection_.on().baud();
+  const std::uint32_t baud = connection_.port().baud();
   const model* const found = recognised_.follow(seen, baud, now.model->link == link_kind::two_way);
   if (found == nullptr) return;
   stated_.follow(*found);
@@ -265,7 +265,7 @@ bool replay_player::play_events(bool all) {
 }
 
 void replay_player::play(const recorded_event& what) {
-  if (what.zero) pipeline_.zero().set(*what.zero, zero_offset::known_by::recording);
+  if (what.zero) pipeline_.zero().set(*what.zero, zero_offset::stated_by::recording);
   switch (what.what) {
     case recorded_event::kind::opened:
       pipeline_.follow(what.baud);
@@ -337,7 +337,7 @@ void replay_player::follow_seek() {
   delivers_ = true;
   if (!connection_.is_open()) static_cast<void>(connection_.open());
   receiver_.reset(0, 0, now_ns());
-  if (connection_.is_open()) pipeline_.follow(connection_.on().baud(), true);
+  if (connection_.is_open()) pipeline_.follow(connection_.port().baud(), true);
   if (stage_ == stage::idle) return;
   stage_ = connection_.is_open() ? stage::playing : stage::closed;
   spin_up_.forget();

@@ -16,12 +16,12 @@ namespace g4lidar {
 /// points result. In a file of bytes every packet produces points.
 class replay_player final : public scan_source {
  public:
-  replay_player(parts& of, const lidar_options& options);
+  replay_player(parts& used, const lidar_options& options);
 
   [[nodiscard]] result<void> open() override;
   [[nodiscard]] result<void> start() override;
   [[nodiscard]] result<void> stop() override;
-  [[nodiscard]] result<answer> ask(const request& wanted, while_scanning how) override;
+  [[nodiscard]] result<answer> ask(const request& wanted, while_scanning if_scanning) override;
   void release(bool rests) noexcept override;
 
   [[nodiscard]] result<void> can_read() const noexcept override;
@@ -74,8 +74,8 @@ class replay_player final : public scan_source {
       recorded_zero = what.zero;
       if (recorder != nullptr) recorder->event(what);
     }
-    void follow(const model& which) noexcept {
-      identity = identity_reader(which, true);
+    void follow(const model& model) noexcept {
+      identity = identity_reader(model, true);
       is_zero_judged = false;
     }
   };

@@ -19,7 +19,7 @@ class listening_driver final : public live_source {
   /// Scans end. Nothing stops the motor: the event still_turning reports it.
   [[nodiscard]] result<void> stop() override;
   /// What the lidar has reported unasked; every other request is refused.
-  [[nodiscard]] result<answer> ask(const request& wanted, while_scanning how) override;
+  [[nodiscard]] result<answer> ask(const request& wanted, while_scanning if_scanning) override;
 
  private:
   [[nodiscard]] result<void> connected() override;

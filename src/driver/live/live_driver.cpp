@@ -99,7 +99,7 @@ std::int64_t live_driver::due_ns() const noexcept {
 // ---- the connection -------------------------------------------------------------------------------
 
 result<void> live_driver::connected() {
-  const bool was_heard = is_recognised_ || connection_.from().traits().is_searched;
+  const bool was_heard = is_recognised_ || connection_.port_connector().traits().is_searched;
   listening_ = {was_heard ? 0 : now_ns(), pipeline_.input().bytes_parsed()};
   setup_.reset_short_scans();  // the session has forgotten the scans before, too
   question_.forget_woken();
@@ -155,12 +155,12 @@ result<void> live_driver::stop() {
   return {};
 }
 
-result<answer> live_driver::ask(const request& wanted, while_scanning how) {
+result<answer> live_driver::ask(const request& wanted, while_scanning if_scanning) {
   if (!question_.was_woken(wanted) || !stream_.talk().is_busy()) {
     question_.forget_woken();
     if (auto ready = settle(); !ready) return tl::unexpected(ready.error());
     stream_.heard() = {};
-    if (const auto refused = stream_.talk().begin(wanted, now_ns(), how)) {
+    if (const auto refused = stream_.talk().begin(wanted, now_ns(), if_scanning)) {
       return tl::unexpected(
           refusal_error(task::asking, *refused, wanted, *options_.model, connection_.name()));
     }

@@ -17,7 +17,7 @@ class live_driver final : public live_source {
 
   [[nodiscard]] result<void> start() override;
   [[nodiscard]] result<void> stop() override;
-  [[nodiscard]] result<answer> ask(const request& wanted, while_scanning how) override;
+  [[nodiscard]] result<answer> ask(const request& wanted, while_scanning if_scanning) override;
 
  private:
   [[nodiscard]] result<void> connected() override;

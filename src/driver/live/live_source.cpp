@@ -18,8 +18,8 @@ bool may_answer(const lidar_options& options) noexcept {
 
 }  // namespace
 
-live_source::live_source(parts& of, const lidar_options& options)
-    : scan_source(of, options),
+live_source::live_source(parts& used, const lidar_options& options)
+    : scan_source(used, options),
       options_(options),
       stream_({connection_, pipeline_, receiver_, spin_up_, stage_, takes_points_}, options) {}
 
@@ -92,7 +92,7 @@ result<void> live_source::hang_up() {
 
 void live_source::release(bool rests) noexcept {
   if (rests) static_cast<void>(stream_.set_motor(false));
-  if (!rests && connection_.is_open()) connection_.on().keep_dtr();
+  if (!rests && connection_.is_open()) connection_.port().keep_dtr();
   stream_.flush();
   pipeline_.drop_scan();
   connection_.close();
@@ -124,7 +124,7 @@ result<void> live_source::identified(const device_information& who) {
   const bool is_part = options_.model->link == link_kind::one_way &&
                        !(who.has_serial_number() && information_.has_serial_number());
   if (information_.is_known() && !is_part && who.serial_digits != information_.serial_digits) {
-    connection_.from().refuse();  // the wanted lidar may be behind another port
+    connection_.port_connector().refuse();  // the wanted lidar may be behind another port
     if (reconnection_.refuse(who)) report(lidar_event::kind::other_lidar);
     return failure(task::finding, problem::no_port, connection_.name());
   }
@@ -137,7 +137,7 @@ result<void> live_source::identified(const device_information& who) {
 
 /// Of the line; 0: behind a bridge, where nobody has named it.
 std::uint32_t live_source::known_baud() const noexcept {
-  return is_bridge(connection_.name()) ? options_.baud : connection_.on().baud();
+  return is_bridge(connection_.name()) ? options_.baud : connection_.port().baud();
 }
 
 /// Whether the number of another model ends it: nothing that the device will send can decide. A model that was stated is
@@ -145,10 +145,11 @@ std::uint32_t live_source::known_baud() const noexcept {
 /// samples has another number anyhow.
 bool live_source::refuses(const device_information& who) const noexcept {
   const known_by by = recognised_.get().by;
-  const bool is_guessed = by == known_by::samples ||
-                          (by == known_by::nothing && connection_.from().traits().is_searched);
+  const bool is_guessed =
+      by == known_by::samples ||
+      (by == known_by::nothing && connection_.port_connector().traits().is_searched);
   if (options_.insist_on_model || is_guessed) return false;
-  return is_surely_another(*options_.model, who.model, connection_.on().baud());
+  return is_surely_another(*options_.model, who.model, connection_.port().baud());
 }
 
 /// The samples have another size than those of the model: they decide, unless the user does.
@@ -185,7 +186,7 @@ void live_source::judge_model() noexcept {
   if (!recognised_.live.is_judged && is_known) {
     recognised_.live.is_judged = true;
     recognised_.confirm(known_baud(), may_answer(options_));
-    recognised_.record(connection_.from());
+    recognised_.record(connection_.port_connector());
     if (pipeline_.decoder().lacks_zero()) report(lidar_event::kind::no_zero_angle);
   }
 }

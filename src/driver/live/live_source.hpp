@@ -16,7 +16,7 @@ namespace g4lidar {
 /// to identifying. What a device has to be asked between them is up to its driver.
 class live_source : public scan_source {
  public:
-  live_source(parts& of, const lidar_options& options);
+  live_source(parts& used, const lidar_options& options);
 
   [[nodiscard]] result<void> open() override;
   void release(bool rests) noexcept override;

@@ -19,49 +19,49 @@ session_times times_for(const lidar_tuning& tuning) noexcept {
 
 }  // namespace
 
-live_stream::live_stream(const parts& of, const lidar_options& options)
-    : of_(of),
+live_stream::live_stream(const parts& used, const lidar_options& options)
+    : parts_(used),
       pace_(options.tuning.pace),
-      link_(of.pipeline.input(), nullptr, times_for(options.tuning), device_link::usual_cut_off_ns,
-            *options.model, options.listen_only),
+      link_(used.pipeline.input(), nullptr, times_for(options.tuning),
+            device_link::usual_cut_off_ns, *options.model, options.listen_only),
       motor_(options.model->motor),
       leaves_dtr_(options.leave_dtr),
       reported_(*options.model, link_.listens()),
       sample_rate_hz_(first_rate_hz(*options.model)) {}
 
 void live_stream::begin() {
-  transport& on = of_.on.on();
-  link_.follow(on);
+  transport& port = parts_.connection.port();
+  link_.follow(port);
   reported_.reset();
   heard_ = {};
   changes_ = {};
-  of_.from.reset(on.baud(), on.kept_bytes(), now_ns());
-  of_.pipeline.follow(on.baud());
-  of_.motor.forget();
+  parts_.receiver.reset(port.baud(), port.kept_bytes(), now_ns());
+  parts_.pipeline.follow(port.baud());
+  parts_.motor.forget();
   is_line_high_ = true;  // the system raises it
   record(recorded_event::kind::held);
 }
 
 result<void> live_stream::send() {
   return link_.send([&](bytes command) {
-    of_.pipeline.sent(command);
+    parts_.pipeline.sent(command);
     heard_.sent(command);
-    return of_.on.send(command);
+    return parts_.connection.send(command);
   });
 }
 
 result<void> live_stream::look_if_due() {
   const std::int64_t due_ns = talk().next_look_ns();
-  const event_reader& input = of_.pipeline.input();
+  const event_reader& input = parts_.pipeline.input();
   if (!input.unparsed().empty() || due_ns > now_ns()) return {};
-  if (of_.from.read_until_ns() < due_ns) {
+  if (parts_.receiver.read_until_ns() < due_ns) {
     if (auto got = receive(now_ns()); !got) return got;
     if (!input.unparsed().empty()) return {};
   } else if (link_.cut_off()) {
     record(recorded_event::kind::cut);
   }
   if (!input.is_empty() && input.current() == nullptr) {  // cut off
-    of_.pipeline.drop_scan();
+    parts_.pipeline.drop_scan();
     if (parse()) return {};  // look() follows in the next round
   }
   talk().look(now_ns());
@@ -69,30 +69,30 @@ result<void> live_stream::look_if_due() {
 }
 
 result<void> live_stream::receive(std::int64_t deadline_ns) {
-  const auto got = link_.receive(of_.from.buffer(), [&](transport& on) {
-    const event_reader& input = of_.pipeline.input();
-    return of_.from.receive(on, how_to_read(), input.held(), input.missing(), deadline_ns);
+  const auto got = link_.receive(parts_.receiver.buffer(), [&](transport& port) {
+    const event_reader& input = parts_.pipeline.input();
+    return parts_.receiver.receive(port, how_to_read(), input.held(), input.missing(), deadline_ns);
   });
   if (!got) return tl::unexpected(got.error());
-  const bytes data = of_.from.buffer().first(got->count);
+  const bytes data = parts_.receiver.buffer().first(got->count);
   heard_.received(data);
-  if (of_.stage == live_stage::identifying) changes_.take(data);
+  if (parts_.stage == live_stage::identifying) changes_.take(data);
   if (got->count == 0 && link_.cut_off()) record(recorded_event::kind::cut);
   return {};
 }
 
 reading live_stream::how_to_read() const noexcept {
-  if (of_.stage != live_stage::scanning) return reading::at_once;
-  if (of_.from.is_batched()) return reading::batched;
+  if (parts_.stage != live_stage::scanning) return reading::at_once;
+  if (parts_.receiver.is_batched()) return reading::batched;
   if (link_.awaits_answer()) return reading::at_once;
   const bool by_packets = pace_ == read_pace::automatic
-                              ? of_.takes_points.load(std::memory_order_relaxed)
+                              ? parts_.takes_points.load(std::memory_order_relaxed)
                               : pace_ == read_pace::packets;
   return by_packets ? reading::paced : reading::scans;
 }
 
 bool live_stream::parse() {
-  point_pipeline& pipeline = of_.pipeline;
+  point_pipeline& pipeline = parts_.pipeline;
   const auto next = [&] { return pipeline.find_scan() ? nullptr : pipeline.next(); };
   link_.events(next, [&](const event& found) {
     reported_.take(found);
@@ -101,48 +101,49 @@ bool live_stream::parse() {
     if (packet == nullptr || !pipeline.delivers()) return;
     const double period_ns = pipeline.decoder().period_ns();
     const auto way_ns = static_cast<double>(packet->sample_count() - 1) * period_ns;
-    of_.from.packet(*packet, pipeline.input().unparsed().size(),
-                    pipeline.decoder().next_sample_ns() + static_cast<std::int64_t>(way_ns),
-                    period_ns);
+    parts_.receiver.packet(*packet, pipeline.input().unparsed().size(),
+                           pipeline.decoder().next_sample_ns() + static_cast<std::int64_t>(way_ns),
+                           period_ns);
   });
   return pipeline.has_scan();
 }
 
 void live_stream::cut() {
   record(recorded_event::kind::cut);
-  of_.pipeline.input().cut();
+  parts_.pipeline.input().cut();
 }
 
 void live_stream::flush() {
-  if (!of_.on.is_open()) return;
-  of_.pipeline.drop_scan();
+  if (!parts_.connection.is_open()) return;
+  parts_.pipeline.drop_scan();
   cut();
-  while (parse()) of_.pipeline.drop_scan();
+  while (parse()) parts_.pipeline.drop_scan();
 }
 
 void live_stream::follow_delivery() {
-  const bool delivers = of_.pipeline.delivers();
-  const bool may_begin = of_.stage >= live_stage::preparing && of_.stage != live_stage::stopping;
-  const bool goes_on = of_.stage == live_stage::stopping && delivers;
-  const bool wanted = link_.listens() ? of_.stage == live_stage::scanning
+  const bool delivers = parts_.pipeline.delivers();
+  const bool may_begin =
+      parts_.stage >= live_stage::preparing && parts_.stage != live_stage::stopping;
+  const bool goes_on = parts_.stage == live_stage::stopping && delivers;
+  const bool wanted = link_.listens() ? parts_.stage == live_stage::scanning
                                       : talk().is_scanning() && (may_begin || goes_on);
   if (wanted == delivers) return;
-  of_.pipeline.deliver(wanted);
+  parts_.pipeline.deliver(wanted);
   wanted ? begin_points() : record(recorded_event::kind::held);
 }
 
 void live_stream::begin_points() {
-  of_.motor.begin(detail::saturating_add(now_ns(), spin_up::longest_ns),
-                  of_.pipeline.counts().scans);
-  of_.pipeline.begin(sample_rate_hz_);
+  parts_.motor.begin(detail::saturating_add(now_ns(), spin_up::longest_ns),
+                     parts_.pipeline.counts().scans);
+  parts_.pipeline.begin(sample_rate_hz_);
   record(recorded_event::kind::begun);
 }
 
 result<void> live_stream::set_motor(bool on) {
   constexpr std::int64_t low_ns = 100'000'000;
   const bool has_line = motor_ == motor_kind::dtr && !leaves_dtr_;
-  if (!has_line || !of_.on.is_open() || (!on && !is_line_high_)) return {};
-  const auto set = of_.on.on().set_dtr(on);
+  if (!has_line || !parts_.connection.is_open() || (!on && !is_line_high_)) return {};
+  const auto set = parts_.connection.port().set_dtr(on);
   if (!set) return tl::unexpected(set.error());
   if (!*set) return {};  // no such line: the motor turns by other means
   is_line_high_ = on;
@@ -151,15 +152,16 @@ result<void> live_stream::set_motor(bool on) {
   return {};
 }
 
-void live_stream::become(const model& which) {
+void live_stream::become(const model& model) {
   record(recorded_event::kind::cut);  // what is held of a packet is dropped
-  talk().reset(&which, true);
-  reported_ = identity_reader(which, link_.listens());
-  motor_ = which.motor;
-  sample_rate_hz_ = first_rate_hz(which);
-  of_.from.become(which);
-  of_.from.reset(of_.on.on().baud(), of_.on.on().kept_bytes(), now_ns());
-  of_.pipeline.become(which, of_.on.on().baud());
+  talk().reset(&model, true);
+  reported_ = identity_reader(model, link_.listens());
+  motor_ = model.motor;
+  sample_rate_hz_ = first_rate_hz(model);
+  parts_.receiver.become(model);
+  parts_.receiver.reset(parts_.connection.port().baud(), parts_.connection.port().kept_bytes(),
+                        now_ns());
+  parts_.pipeline.become(model, parts_.connection.port().baud());
   record(recorded_event::kind::begun);
 }
 
@@ -167,40 +169,40 @@ void live_stream::learn(const answer& heard) {
   const auto* rate = std::get_if<sample_rate>(&heard);
   if (rate == nullptr || to_hz(*rate) == sample_rate_hz_) return;
   sample_rate_hz_ = to_hz(*rate);
-  if (of_.pipeline.delivers()) begin_points();
+  if (parts_.pipeline.delivers()) begin_points();
 }
 
 /// For a recording. A place is defined by the unparsed rest of the last read and by the number of
 /// events from it: both are the same when the same bytes are read again.
 void live_stream::record(recorded_event::kind what) {
-  recording_hook* const recorder = recording_hook_of(of_.on.from());
-  if (recorder == nullptr || !of_.on.is_open()) return;
+  recording_hook* const recorder = recording_hook_of(parts_.connection.port_connector());
+  if (recorder == nullptr || !parts_.connection.is_open()) return;
   recorded_event made{.what = what, .time_ns = now_ns()};
-  made.delivers = of_.pipeline.delivers();
-  made.zero = of_.pipeline.zero().angle();
-  made.baud = of_.on.on().baud();
+  made.delivers = parts_.pipeline.delivers();
+  made.zero = parts_.pipeline.zero().angle();
+  made.baud = parts_.connection.port().baud();
   made.sample_rate_hz = sample_rate_hz_;
-  made.unparsed = static_cast<std::uint32_t>(of_.pipeline.input().unparsed().size());
-  made.events = of_.pipeline.input().events_of_reading();
+  made.unparsed = static_cast<std::uint32_t>(parts_.pipeline.input().unparsed().size());
+  made.events = parts_.pipeline.input().events_of_reading();
   recorder->event(made);
 }
 
 std::int64_t live_stream::next_deadline_ns() const noexcept {
-  if (!of_.pipeline.is_empty() || !talk().has_nothing()) return now_ns();
+  if (!parts_.pipeline.is_empty() || !talk().has_nothing()) return now_ns();
   return link_.due_ns();
 }
 
 /// An event loop that takes points is woken by each byte. What an idle one-way lidar sends is not read.
 std::int64_t live_stream::rest_until_ns() const noexcept {
-  if (link_.listens() && of_.stage == live_stage::idle) return never_ns;
+  if (link_.listens() && parts_.stage == live_stage::idle) return never_ns;
   const reading how = how_to_read();
   if (how != reading::scans && how != reading::batched) return 0;
-  const event_reader& input = of_.pipeline.input();
-  return of_.from.again_ns(how, input.held(), input.missing());
+  const event_reader& input = parts_.pipeline.input();
+  return parts_.receiver.again_ns(how, input.held(), input.missing());
 }
 
 error live_stream::error_after(const error& why) const {
-  return of_.on.is_open() ? with_port_conflict(why, of_.on.on()) : why;
+  return parts_.connection.is_open() ? with_port_conflict(why, parts_.connection.port()) : why;
 }
 
 }  // namespace g4lidar

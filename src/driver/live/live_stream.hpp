@@ -25,15 +25,15 @@ namespace g4lidar {
 class live_stream {
  public:
   struct parts {
-    connection& on;
+    g4lidar::connection& connection;
     point_pipeline& pipeline;
-    receiver& from;
+    g4lidar::receiver& receiver;
     spin_up& motor;
     const live_stage& stage;
     const std::atomic<bool>& takes_points;  ///< See scan_source::take_points().
   };
 
-  live_stream(const parts& of, const lidar_options& options);
+  live_stream(const parts& used, const lidar_options& options);
 
   [[nodiscard]] session& talk() noexcept { return link_.talk(); }
   [[nodiscard]] const session& talk() const noexcept { return link_.talk(); }
@@ -68,8 +68,8 @@ class live_stream {
   void follow_delivery();
   /// The motor is started, or was interrupted: the points that follow are a new stream.
   void begin_points();
-  /// The device is one like `which`, and goes on. Only if everything that was received is parsed.
-  void become(const model& which);
+  /// The device is one like `model`, and goes on. Only if everything that was received is parsed.
+  void become(const model& model);
   /// For a recording: what happens here.
   void record(recorded_event::kind what);
   /// Uses the sample rate, if it is the answer.
@@ -83,7 +83,7 @@ class live_stream {
 
   /// Whether packets of a wanted scan come, or are resumed.
   [[nodiscard]] bool is_scanning() const noexcept {
-    return of_.stage == live_stage::scanning && (link_.listens() || talk().is_scanning());
+    return parts_.stage == live_stage::scanning && (link_.listens() || talk().is_scanning());
   }
 
   /// When something is due, if nothing arrives.
@@ -95,10 +95,10 @@ class live_stream {
   [[nodiscard]] error error_after(const error& why) const;
 
  private:
-  [[nodiscard]] std::int64_t now_ns() const noexcept { return of_.on.now_ns(); }
+  [[nodiscard]] std::int64_t now_ns() const noexcept { return parts_.connection.now_ns(); }
   [[nodiscard]] reading how_to_read() const noexcept;
 
-  parts of_;
+  parts parts_;
   read_pace pace_;
   device_link link_;
   motor_kind motor_;

@@ -36,14 +36,14 @@ class reconnection {
   }
   /// Waits for the next attempt, at most until the deadline. Returns whether it is due. If a port has
   /// changed, it is due at once, and the pauses are short again.
-  [[nodiscard]] bool wait(connection& on, std::int64_t deadline_ns) noexcept {
-    if (on.now_ns() >= next_attempt_ns_) return true;
-    on.pause(std::min(deadline_ns, next_attempt_ns_));
-    if (on.from().may_be_back()) {
-      next_attempt_ns_ = on.now_ns();
+  [[nodiscard]] bool wait(connection& connection, std::int64_t deadline_ns) noexcept {
+    if (connection.now_ns() >= next_attempt_ns_) return true;
+    connection.pause(std::min(deadline_ns, next_attempt_ns_));
+    if (connection.port_connector().may_be_back()) {
+      next_attempt_ns_ = connection.now_ns();
       backoff_ns_ = first_pause_ns;
     }
-    return on.now_ns() >= next_attempt_ns_;
+    return connection.now_ns() >= next_attempt_ns_;
   }
   [[nodiscard]] std::int64_t next_attempt_ns() const noexcept { return next_attempt_ns_; }
 

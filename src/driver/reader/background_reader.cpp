@@ -34,9 +34,9 @@ reader_listener::~reader_listener() = default;
 
 background_reader::background_reader(std::shared_ptr<thread> made) noexcept
     : thread_(std::move(made)) {}
-background_reader::background_reader(const lidar_options& options, const reader_options& how,
+background_reader::background_reader(const lidar_options& options, const reader_options& reading,
                                      reader_listener* listener)
-    : thread_(std::make_shared<thread>(options, how, listener)) {}
+    : thread_(std::make_shared<thread>(options, reading, listener)) {}
 background_reader::background_reader(background_reader&&) noexcept = default;
 
 background_reader& background_reader::operator=(background_reader&& other) noexcept {
@@ -49,8 +49,8 @@ background_reader& background_reader::operator=(background_reader&& other) noexc
 
 background_reader::~background_reader() { stop(); }
 
-result<background_reader> background_reader::start(lidar&& device, const reader_options& how) {
-  background_reader made(std::make_shared<thread>(std::move(device), how));
+result<background_reader> background_reader::start(lidar&& device, const reader_options& options) {
+  background_reader made(std::make_shared<thread>(std::move(device), options));
   if (auto started = made.start(); !started) return tl::unexpected(started.error());
   return made;
 }

@@ -16,7 +16,7 @@ namespace g4lidar {
 /// Keeps scans and events until they are taken.
 class reader_queue final : public reader_listener {
  public:
-  reader_queue(std::size_t depth, const model& which) : scans(depth, which) {}
+  reader_queue(std::size_t depth, const model& model) : scans(depth, model) {}
 
   void on_scan(const scan& found) override { scans.put(found); }
   void on_event(const lidar_event& what) override {

@@ -29,33 +29,33 @@ std::size_t depth_of(const reader_options& how) noexcept { return how.newest_onl
 
 }  // namespace
 
-background_reader::thread::thread(const lidar_options& options, const reader_options& how,
+background_reader::thread::thread(const lidar_options& options, const reader_options& reading,
                                   reader_listener* listener)
     : options_(options),
-      how_(how),
+      how_(reading),
       listener_(listener != nullptr
                     ? listener
                     : (queue = std::make_unique<reader_queue>(
-                           depth_of(how), options.model != nullptr ? *options.model : g4_model))
+                           depth_of(reading), options.model != nullptr ? *options.model : g4_model))
                           .get()),
       playback_{.speed = options.playback.speed} {
   options_.is_cancelled = [this, inner = options.is_cancelled] {
     return requests.has_to_stop() || (inner && inner());
   };
-  requests.add([&](reader_request& all) { all.rests = how.starts_rested; });
+  requests.add([&](reader_request& all) { all.rests = reading.starts_rested; });
 }
 
-background_reader::thread::thread(lidar&& given, const reader_options& how)
+background_reader::thread::thread(lidar&& given, const reader_options& options)
     // A model with larger scans than a G4 makes it grow once.
-    : queue(std::make_unique<reader_queue>(depth_of(how), g4_model)),
-      how_(how),
+    : queue(std::make_unique<reader_queue>(depth_of(options), g4_model)),
+      how_(options),
       listener_(queue.get()),
       device_(std::make_unique<lidar>(std::move(given))),
       is_given_(true) {
   if (player* const file = played()) {
     playback_ = {.speed = file->speed(), .is_paused = file->is_paused()};
   }
-  requests.add([&](reader_request& all) { all.rests = how.starts_rested; });
+  requests.add([&](reader_request& all) { all.rests = options.starts_rested; });
   show_device();
 }
 

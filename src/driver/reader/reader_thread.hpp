@@ -22,9 +22,9 @@ namespace g4lidar {
 class G4LIDAR_HIDDEN background_reader::thread
     : public std::enable_shared_from_this<background_reader::thread> {
  public:
-  thread(const lidar_options& options, const reader_options& how, reader_listener* listener);
+  thread(const lidar_options& options, const reader_options& reading, reader_listener* listener);
   /// Of an open lidar, which is never opened again.
-  thread(lidar&& given, const reader_options& how);
+  thread(lidar&& given, const reader_options& options);
 
   thread(const thread&) = delete;
   thread& operator=(const thread&) = delete;

@@ -20,8 +20,8 @@ namespace g4lidar {
 /// open.*
 class scan_queue {
  public:
-  scan_queue(std::size_t depth, const model& which) : slots_(depth + 1) {
-    for (slot& each : slots_) each.points.reserve(largest_scan(which));
+  scan_queue(std::size_t depth, const model& model) : slots_(depth + 1) {
+    for (slot& each : slots_) each.points.reserve(largest_scan(model));
   }
 
   /// Copies `found`. If there is no room, the oldest scan is dropped and counted. Never waits long.

@@ -24,11 +24,11 @@ class file_source final : public byte_source {
   [[nodiscard]] std::uint64_t size() const noexcept override { return size_; }
 
  private:
-  [[nodiscard]] result<std::size_t> read_some(std::uint64_t at,
+  [[nodiscard]] result<std::size_t> read_some(std::uint64_t offset,
                                               std::span<std::uint8_t> out) noexcept override {
     std::size_t done = 0;
     while (done < out.size()) {
-      const auto from = static_cast<off_t>(at + done);
+      const auto from = static_cast<off_t>(offset + done);
       const ssize_t count = uninterrupted(
           [&] { return ::pread(fd_.get(), out.data() + done, out.size() - done, from); });
       if (count < 0) return failure(task::reading, problem::system, path_, errno);

@@ -23,10 +23,10 @@ class byte_source {
   byte_source& operator=(const byte_source&) = delete;
 
   [[nodiscard]] virtual std::uint64_t size() const noexcept = 0;
-  /// Reads up to out.size() bytes from `at` on; fewer only at the end and after a failure.
-  [[nodiscard]] std::size_t read(std::uint64_t at, std::span<std::uint8_t> out) noexcept {
+  /// Reads up to out.size() bytes from `offset` on; fewer only at the end and after a failure.
+  [[nodiscard]] std::size_t read(std::uint64_t offset, std::span<std::uint8_t> out) noexcept {
     if (trouble_) return 0;
-    const auto count = read_some(at, out);
+    const auto count = read_some(offset, out);
     if (!count) fail(count.error());
     return count.value_or(0);
   }
@@ -47,7 +47,7 @@ class byte_source {
   byte_source() = default;
 
  private:
-  [[nodiscard]] virtual result<std::size_t> read_some(std::uint64_t at,
+  [[nodiscard]] virtual result<std::size_t> read_some(std::uint64_t offset,
                                                       std::span<std::uint8_t> out) noexcept = 0;
 
   std::optional<error> trouble_;

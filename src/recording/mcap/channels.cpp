@@ -41,8 +41,8 @@ struct schema_words {
 };
 constexpr std::uint16_t schema_count_of_all = 6;
 std::span<const schema_words> all_schemas() noexcept {
-  const auto words = [](std::uint16_t id, message_schema of) {
-    return schema_words{id, of.name, of.text};
+  const auto words = [](std::uint16_t id, message_schema schema) {
+    return schema_words{id, schema.name, schema.text};
   };
   static const std::array<schema_words, schema_count_of_all> schemas{{
       words(1, recorded_bytes_schema()),
@@ -56,13 +56,13 @@ std::span<const schema_words> all_schemas() noexcept {
 }
 
 constexpr std::array<topic_words, topic_count> topics{{
-    {topic::from_device, recorded_bytes_topic, 1},
-    {topic::to_device, "/g4lidar/to_device", 1},
-    {topic::events, "/g4lidar/events", 2},
-    {topic::scan, "/scan", 3},
-    {topic::points, "/points", 4},
-    {topic::odometry, "/odom", 5},
-    {topic::tf_static, "/tf_static", 6},
+    {channel_id::from_device, recorded_bytes_topic, 1},
+    {channel_id::to_device, "/g4lidar/to_device", 1},
+    {channel_id::events, "/g4lidar/events", 2},
+    {channel_id::scan, "/scan", 3},
+    {channel_id::points, "/points", 4},
+    {channel_id::odometry, "/odom", 5},
+    {channel_id::tf_static, "/tf_static", 6},
 }};
 
 /// Whether a channel of the set has this schema.
@@ -77,8 +77,8 @@ std::span<const topic_words> all_topics() noexcept { return topics; }
 
 channel_set::channel_set(const recording_options& options)
     : scan_topic_(options.topic), points_topic_(options.points_topic) {
-  if (!points_topic_.empty()) add(topic::points);
-  if (options.mount) add(topic::tf_static);
+  if (!points_topic_.empty()) add(channel_id::points);
+  if (options.mount) add(channel_id::tf_static);
   if (options.model != nullptr) model_ = options.model;
 }
 
@@ -106,8 +106,8 @@ void channel_set::put_channels(record_text& out) const {
   for (const topic_words& channel : topics) {
     if (!has(channel.id)) continue;
     std::string name(channel.name);
-    if (channel.id == topic::scan) name = scan_topic_;
-    if (channel.id == topic::points) name = points_topic_;
+    if (channel.id == channel_id::scan) name = scan_topic_;
+    if (channel.id == channel_id::points) name = points_topic_;
     word_map words{{"offered_qos_profiles", ""}};
     if (channel.is_of_connection() && *model_ != g4_model) {
       name.insert(connection_prefix.size(), model_version);
@@ -181,10 +181,10 @@ payload_digest payload_of(bytes records) noexcept {
     const auto kind = static_cast<opcode>(rest.take<std::uint8_t>());
     field_reader record(rest.take(rest.take<std::uint64_t>()));
     if (kind != opcode::message) continue;
-    const auto id = static_cast<topic>(record.take<std::uint16_t>());
+    const auto id = static_cast<channel_id>(record.take<std::uint16_t>());
     static_cast<void>(record.take(message_header_size - sizeof(std::uint16_t)));
-    if (id != topic::from_device && id != topic::to_device) continue;
-    const auto way = id == topic::from_device ? direction::from_device : direction::to_device;
+    if (id != channel_id::from_device && id != channel_id::to_device) continue;
+    const auto way = id == channel_id::from_device ? direction::from_device : direction::to_device;
     if (const auto found = recorded_bytes_from(record.rest())) sum.add(way, found->data);
   }
   return sum;

@@ -17,7 +17,7 @@
 namespace g4lidar::mcap {
 
 /// The channels, with their numbers in a file.
-enum class topic : std::uint16_t {
+enum class channel_id : std::uint16_t {
   from_device = 1,
   to_device = 2,
   events = 3,
@@ -27,25 +27,25 @@ enum class topic : std::uint16_t {
   tf_static = 7,
 };
 inline constexpr std::size_t topic_count = 7;
-[[nodiscard]] constexpr std::size_t index_of(topic id) noexcept {
+[[nodiscard]] constexpr std::size_t index_of(channel_id id) noexcept {
   return static_cast<std::size_t>(id) - 1;
 }
 
 struct topic_words {
-  topic id;
+  channel_id id;
   std::string_view name;
   std::uint16_t schema;
 
   [[nodiscard]] constexpr bool is_named_by_options() const noexcept {
-    return id == topic::scan || id == topic::points;
+    return id == channel_id::scan || id == channel_id::points;
   }
   /// Whether its messages are of the connection to the lidar: its name states the version.
   [[nodiscard]] constexpr bool is_of_connection() const noexcept {
-    return index_of(id) < index_of(topic::scan);
+    return index_of(id) < index_of(channel_id::scan);
   }
   /// Whether readers of recordings return its messages.
   [[nodiscard]] constexpr bool is_read() const noexcept {
-    return is_of_connection() || id == topic::odometry;
+    return is_of_connection() || id == channel_id::odometry;
   }
 };
 /// The begin of the names of these channels. What follows in a recording of another model than a G4 is
@@ -64,11 +64,11 @@ class channel_set {
   /// Those that a recording with these options begins with.
   explicit channel_set(const recording_options& options);
 
-  [[nodiscard]] bool has(topic id) const noexcept { return is_in_[index_of(id)]; }
-  void add(topic id) noexcept { is_in_[index_of(id)] = true; }
+  [[nodiscard]] bool has(channel_id id) const noexcept { return is_in_[index_of(id)]; }
+  void add(channel_id id) noexcept { is_in_[index_of(id)] = true; }
   /// The model of the lidar.
   [[nodiscard]] const g4lidar::model& model() const noexcept { return *model_; }
-  void set_model(const g4lidar::model& which) noexcept { model_ = &which; }
+  void set_model(const g4lidar::model& model) noexcept { model_ = &model; }
   [[nodiscard]] std::uint32_t count() const noexcept;
   [[nodiscard]] std::uint16_t schema_count() const noexcept;
 
@@ -89,9 +89,11 @@ class found_channels {
   /// Takes the content of the record of a channel.
   void take(field_reader record);
 
-  [[nodiscard]] bool has(topic which) const noexcept { return ids_[index_of(which)].has_value(); }
-  [[nodiscard]] bool is(topic which, std::uint16_t id) const noexcept {
-    return ids_[index_of(which)] == id;
+  [[nodiscard]] bool has(channel_id which) const noexcept {
+    return ids_[index_of(which)].has_value();
+  }
+  [[nodiscard]] bool is(channel_id channel, std::uint16_t id) const noexcept {
+    return ids_[index_of(channel)] == id;
   }
   /// Whether readers return the messages of this channel.
   [[nodiscard]] bool reads(std::uint16_t id) const noexcept;

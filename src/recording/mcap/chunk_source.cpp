@@ -26,30 +26,30 @@ chunk_source::chunk_source(std::shared_ptr<byte_source> file, found_channels kno
 
 // ---- bytes --------------------------------------------------------------------------------------
 
-/// What the window has from `at` on: at least `least` bytes (at most its size), or all that the file has.
-bytes chunk_source::ahead(std::uint64_t at, std::size_t least) {
-  const bool begins_in = at >= window_at_ && at <= window_at_ + window_size_;
-  const std::uint64_t held = begins_in ? window_at_ + window_size_ - at : 0;
-  const std::uint64_t there = at < size_ ? size_ - at : 0;
+/// What the window has from `offset` on: at least `least` bytes (at most its size), or all that the file has.
+bytes chunk_source::ahead(std::uint64_t offset, std::size_t least) {
+  const bool begins_in = offset >= window_at_ && offset <= window_at_ + window_size_;
+  const std::uint64_t held = begins_in ? window_at_ + window_size_ - offset : 0;
+  const std::uint64_t there = offset < size_ ? size_ - offset : 0;
   if (held < std::min<std::uint64_t>(least, there)) {
-    window_at_ = at;
-    window_size_ = file_->read(at, window_);
+    window_at_ = offset;
+    window_size_ = file_->read(offset, window_);
   }
-  const std::uint64_t skipped = std::min<std::uint64_t>(at - window_at_, window_size_);
+  const std::uint64_t skipped = std::min<std::uint64_t>(offset - window_at_, window_size_);
   return bytes(window_).first(window_size_).subspan(static_cast<std::size_t>(skipped));
 }
 
-/// `size` bytes from `at` on (at most the size of the window), or all available ones.
-bytes chunk_source::window(std::uint64_t at, std::size_t size) {
-  const bytes all = ahead(at, size);
+/// `size` bytes from `offset` on (at most the size of the window), or all available ones.
+bytes chunk_source::window(std::uint64_t offset, std::size_t size) {
+  const bytes all = ahead(offset, size);
   return all.first(std::min(size, all.size()));
 }
 
 /// The same for any size.
-bytes chunk_source::content(std::uint64_t at, std::size_t size) {
-  if (size <= window_room) return window(at, size);
+bytes chunk_source::content(std::uint64_t offset, std::size_t size) {
+  if (size <= window_room) return window(offset, size);
   if (stored_.size() < size) stored_.resize(size);
-  return bytes(stored_).first(file_->read(at, std::span(stored_).first(size)));
+  return bytes(stored_).first(file_->read(offset, std::span(stored_).first(size)));
 }
 
 // ---- the sequence of records -------------------------------------------------------------------
@@ -141,8 +141,8 @@ record_block chunk_source::step() {
   return {record, at};
 }
 
-record_block chunk_source::chunk_at(std::uint64_t at, std::uint64_t length) {
-  const auto begin = window(at + record_header_size, longest_chunk_header);
+record_block chunk_source::chunk_at(std::uint64_t offset, std::uint64_t length) {
+  const auto begin = window(offset + record_header_size, longest_chunk_header);
   const auto chunk = chunk_header::from(begin, length);
   if (!chunk) return {};  // believe() has checked it
   if (chunk->how == chunk_header::packed::zstd && !has_zstd()) {
@@ -150,41 +150,41 @@ record_block chunk_source::chunk_at(std::uint64_t at, std::uint64_t length) {
         error(task::reading, problem::bad_option, "a recording packed with zstd: built without"));
     return {};
   }
-  const auto records = records_of(at + record_header_size + chunk->header_size, *chunk);
+  const auto records = records_of(offset + record_header_size + chunk->header_size, *chunk);
   if (file_->is_cancelled()) return {};
   if (!records) {
-    lose_chunk(at, length);
+    lose_chunk(offset, length);
     return {};
   }
   is_guess_ = false;
-  at_ = trusted_ = at + record_header_size + length;
-  return {*records, at};
+  at_ = trusted_ = offset + record_header_size + length;
+  return {*records, offset};
 }
 
 /// The uncompressed records, if they are intact.
-std::optional<bytes> chunk_source::records_of(std::uint64_t at, const chunk_header& chunk) {
+std::optional<bytes> chunk_source::records_of(std::uint64_t offset, const chunk_header& chunk) {
   if (chunk.how == chunk_header::packed::other) return std::nullopt;
-  const auto stored = content(at, static_cast<std::size_t>(chunk.stored));
+  const auto stored = content(offset, static_cast<std::size_t>(chunk.stored));
   if (stored.size() < chunk.stored) return std::nullopt;
   return contents_.records_of(stored, chunk, *file_);
 }
 
 /// A chunk is damaged. If another record follows it, it was a chunk; otherwise its length is also
 /// wrong, or it was not a chunk.
-void chunk_source::lose_chunk(std::uint64_t at, std::uint64_t length) {
+void chunk_source::lose_chunk(std::uint64_t offset, std::uint64_t length) {
   const std::uint64_t size = record_header_size + length;
-  const auto behind = window(at + size, record_header_size + longest_chunk_header);
-  const bool is_followed = at + size == limit_ || believe_at(behind, at + size).has_value();
+  const auto behind = window(offset + size, record_header_size + longest_chunk_header);
+  const bool is_followed = offset + size == limit_ || believe_at(behind, offset + size).has_value();
   const bool was_guess = std::exchange(is_guess_, false);
   wasted_ += size;
   if (is_followed || !was_guess) ++damage_.chunks_lost;
   if (is_followed || wasted_ / patience > size_) {
     damage_.bytes_skipped += size;
-    at_ = trusted_ = at + size;
+    at_ = trusted_ = offset + size;
     return;
   }
   damage_.bytes_skipped += 1;
-  return resynchronise(at + 1);
+  return resynchronise(offset + 1);
 }
 
 /// Searches for a chunk, from `from` on. Bytes that were read are not read again for each wrong guess.

@@ -51,17 +51,17 @@ class chunk_source {
 
  private:
   void look_at_end();
-  [[nodiscard]] bytes ahead(std::uint64_t at, std::size_t least);
-  [[nodiscard]] bytes window(std::uint64_t at, std::size_t size);
-  [[nodiscard]] bytes content(std::uint64_t at, std::size_t size);
+  [[nodiscard]] bytes ahead(std::uint64_t offset, std::size_t least);
+  [[nodiscard]] bytes window(std::uint64_t offset, std::size_t size);
+  [[nodiscard]] bytes content(std::uint64_t offset, std::size_t size);
   [[nodiscard]] std::optional<record_header> believe_at(bytes begin,
-                                                        std::uint64_t at) const noexcept {
-    return believe(begin, limit_ - std::min(limit_, at));
+                                                        std::uint64_t offset) const noexcept {
+    return believe(begin, limit_ - std::min(limit_, offset));
   }
   [[nodiscard]] record_block step();
-  [[nodiscard]] record_block chunk_at(std::uint64_t at, std::uint64_t length);
-  [[nodiscard]] std::optional<bytes> records_of(std::uint64_t at, const chunk_header& chunk);
-  void lose_chunk(std::uint64_t at, std::uint64_t length);
+  [[nodiscard]] record_block chunk_at(std::uint64_t offset, std::uint64_t length);
+  [[nodiscard]] std::optional<bytes> records_of(std::uint64_t offset, const chunk_header& chunk);
+  void lose_chunk(std::uint64_t offset, std::uint64_t length);
   void resynchronise(std::uint64_t from);
   void end_here() noexcept;
 

@@ -21,8 +21,8 @@ class coverage {
     chunk_bytes_ = 0;
   }
   void add(std::int64_t time_ns) noexcept { chunk_last_ns_ = std::max(chunk_last_ns_, time_ns); }
-  void add(direction way, bytes data) noexcept {
-    chunk_payload_.add(way, data);
+  void add(direction direction, bytes data) noexcept {
+    chunk_payload_.add(direction, data);
     chunk_bytes_ += data.size();
   }
   /// The chunk was written.

@@ -13,10 +13,10 @@
 
 namespace g4lidar {
 
+using mcap::channel_id;
 using mcap::chunk_source;
 using mcap::field_reader;
 using mcap::opcode;
-using mcap::topic;
 
 namespace {
 
@@ -222,7 +222,7 @@ std::optional<recorded_item> recording_reader::file_reader::advance() {
     if (!item) return item;
     if (item->time_ns >= to_ns_) {
       const bool is_odometry = item->what == recorded_item::kind::odometry;
-      const bool has_odometry = channels_.has(topic::odometry);
+      const bool has_odometry = channels_.has(channel_id::odometry);
       is_over_ = !is_odometry &&
                  (!has_odometry || detail::saturating_sub(item->time_ns, to_ns_) >= late_ns);
       if (is_over_) return std::nullopt;
@@ -298,9 +298,9 @@ std::optional<recorded_item> recording_reader::file_reader::item_in(field_reader
   const auto wall_ns = static_cast<std::int64_t>(record.take<std::uint64_t>());
   static_cast<void>(record.take<std::uint64_t>());
   if (!record.is_good() || !is_a_time(wall_ns)) return std::nullopt;
-  const auto is = [&](topic which) { return channels_.is(which, id); };
-  const bool is_from_device = is(topic::from_device);
-  if (is_from_device || is(topic::to_device)) {
+  const auto is = [&](channel_id which) { return channels_.is(which, id); };
+  const bool is_from_device = is(channel_id::from_device);
+  if (is_from_device || is(channel_id::to_device)) {
     const auto found = mcap::recorded_bytes_from(record.rest());
     if (!found || !is_a_time(found->time_ns)) return std::nullopt;
     wall_ahead_ns_ = detail::saturating_sub(wall_ns, found->time_ns);
@@ -309,7 +309,7 @@ std::optional<recorded_item> recording_reader::file_reader::item_in(field_reader
         is_from_device ? recorded_item::kind::from_device : recorded_item::kind::to_device;
     return recorded_item{what, found->time_ns, wall_ns, found->data, {}};
   }
-  if (is(topic::odometry)) {
+  if (is(channel_id::odometry)) {
     auto found = mcap::odometry_from(record.rest());
     if (!found || !wall_ahead_ns_) return std::nullopt;
     const std::int64_t stamp_ns = found->time_ns;
@@ -317,7 +317,7 @@ std::optional<recorded_item> recording_reader::file_reader::item_in(field_reader
     if (!is_a_time(stamp_ns) || !is_a_time(found->time_ns)) return std::nullopt;
     return recorded_item{recorded_item::kind::odometry, found->time_ns, stamp_ns, {}, {}, *found};
   }
-  if (!is(topic::events)) return std::nullopt;
+  if (!is(channel_id::events)) return std::nullopt;
   const auto found = mcap::event_from(record.rest());
   if (!found || !is_a_time(found->time_ns)) return std::nullopt;
   wall_ahead_ns_ = detail::saturating_sub(wall_ns, found->time_ns);

@@ -31,7 +31,7 @@ std::string hexadecimal(std::uint64_t value) {
 
 }  // namespace
 
-using mcap::topic;
+using mcap::channel_id;
 
 recording_writer::file_writer::file_writer(mcap::mcap_file first, std::string_view path,
                                            const recording_options& options)
@@ -64,9 +64,9 @@ result<void> recording_writer::file_writer::guarded(Work work) noexcept {
 /// One message of about `size` bytes, which `put` writes. Chunks and files are divided by the times of
 /// all items but odometry, which may be of any time.
 template <class Put>
-void recording_writer::file_writer::put(topic id, std::int64_t time_ns, std::size_t size,
+void recording_writer::file_writer::put(channel_id id, std::int64_t time_ns, std::size_t size,
                                         Put put) noexcept {
-  const std::int64_t item_ns = id == topic::odometry ? last_ns_ : time_ns;
+  const std::int64_t item_ns = id == channel_id::odometry ? last_ns_ : time_ns;
   last_ns_ = std::max(last_ns_, item_ns);
   static_cast<void>(guarded([&]() -> result<void> {
     result<void> ended;
@@ -84,20 +84,20 @@ void recording_writer::file_writer::put(topic id, std::int64_t time_ns, std::siz
   }));
 }
 
-void recording_writer::file_writer::put_bytes(direction way, bytes data,
+void recording_writer::file_writer::put_bytes(direction flow, bytes data,
                                               std::int64_t time_ns) noexcept {
   if (is_closed_) return;
-  payload_.add(way, data);
-  const bool is_from_device = way == direction::from_device;
+  payload_.add(flow, data);
+  const bool is_from_device = flow == direction::from_device;
   (is_from_device ? counts_.bytes_from_device : counts_.bytes_to_device) += data.size();
   while (!data.empty()) {
     const bytes piece = data.first(std::min(data.size(), largest_piece));
     data = data.subspan(piece.size());
     if (is_from_device) ++counts_.readings;
-    put(is_from_device ? topic::from_device : topic::to_device, time_ns, piece.size(),
+    put(is_from_device ? channel_id::from_device : channel_id::to_device, time_ns, piece.size(),
         [&](mcap::record_text& out) {
           mcap::put_recorded_bytes(out, piece, time_ns);
-          covered_.add(way, piece);
+          covered_.add(flow, piece);
         });
   }
 }
@@ -111,9 +111,9 @@ void recording_writer::file_writer::event(const recorded_event& what) noexcept {
     return;
   }
   if (what.what == recorded_event::kind::begun) place().keep();
-  if (what.what !=
-      recorded_event::kind::state) {  // each chunk begins with one, of the state before
-    put(topic::events, what.time_ns, 0,
+  const bool is_state = what.what == recorded_event::kind::state;
+  if (!is_state) {  // each chunk begins with one, of the state before
+    put(channel_id::events, what.time_ns, 0,
         [&](mcap::record_text& out) { mcap::put_event(out, what, wall_.ahead_ns()); });
   }
   transport_.take(what);
@@ -126,7 +126,7 @@ void recording_writer::file_writer::scan(const g4lidar::scan& revolution) noexce
                         .duration_ns = revolution.duration_ns,
                         .order = options_.order,
                         .model = revolution.model};
-  const auto put_stamped = [&](topic id, std::size_t size, auto put_message) {
+  const auto put_stamped = [&](channel_id id, std::size_t size, auto put_message) {
     put(id, last_ns_, size, [&](mcap::record_text& out) {
       header.stamp_ns = wall_.at(points.front().time_ns);
       put_message(out.memory());
@@ -135,17 +135,17 @@ void recording_writer::file_writer::scan(const g4lidar::scan& revolution) noexce
   if (options_.scans) {
     ++counts_.scans;
     ranges_.fill(revolution, options_, header);
-    put_stamped(topic::scan, 2 * ranges_.ranges_m().size_bytes(),
+    put_stamped(channel_id::scan, 2 * ranges_.ranges_m().size_bytes(),
                 [&](auto& out) { put_laser_scan(ranges_.ranges_m(), header, out); });
   }
-  if (channels_.has(topic::points)) {
-    put_stamped(topic::points, points.size() * point_room,
+  if (channels_.has(channel_id::points)) {
+    put_stamped(channel_id::points, points.size() * point_room,
                 [&](auto& out) { put_point_cloud2(points, header, out); });
   }
 }
 
 /// Whether the file has the channel, which is added if necessary.
-bool recording_writer::file_writer::has_channel(topic id) noexcept {
+bool recording_writer::file_writer::has_channel(channel_id id) noexcept {
   if (channels_.has(id)) return true;
   static_cast<void>(guarded([&]() -> result<void> {
     auto done = end_chunk();
@@ -166,9 +166,9 @@ void recording_writer::file_writer::odometry(const stamped_odometry& what) noexc
       values, [](double value) { return std::fabs(value) <= max_odometry_value; });
   const bool has_begun =
       transport_.is_known || counts_.bytes_from_device + counts_.bytes_to_device > 0;
-  if (is_closed_ || !is_possible || !has_begun || !has_channel(topic::odometry)) return;
+  if (is_closed_ || !is_possible || !has_begun || !has_channel(channel_id::odometry)) return;
   ++counts_.odometry;
-  put(topic::odometry, what.time_ns, 0, [&](mcap::record_text& out) {
+  put(channel_id::odometry, what.time_ns, 0, [&](mcap::record_text& out) {
     put_odometry({.stamp_ns = wall_.at(what.time_ns),
                   .frame_id = options_.odometry_frame_id,
                   .child_frame_id = options_.robot_frame_id,
@@ -197,16 +197,16 @@ void recording_writer::file_writer::metadata(
   }));
 }
 
-result<void> recording_writer::file_writer::take_model(const model& which) {
+result<void> recording_writer::file_writer::take_model(const model& lidar_model) {
   const model& now = channels_.model();
-  if (is_closed_ || now == which) return {};
+  if (is_closed_ || now == lidar_model) return {};
   const bool has_begun = transport_.is_known || !chunk_.is_empty() || !file_->is_empty();
   if (options_.model != nullptr || has_begun) {
     return failure(task::opening, problem::bad_option,
-                   "model: " + std::string(which.word) + ", and the recording states " +
+                   "model: " + std::string(lidar_model.word) + ", and the recording states " +
                        std::string(now.word));
   }
-  channels_.set_model(which);
+  channels_.set_model(lidar_model);
   return file_->begin(channels_);
 }
 
@@ -218,7 +218,7 @@ void recording_writer::file_writer::begin_chunk(std::int64_t time_ns) {
   covered_.begin_chunk(time_ns, !file_->has_chunks());
   channels_.put_channels(chunk_.text());
   if (!transport_.is_known) return;
-  chunk_.begin_message(topic::events, sequences_[mcap::index_of(topic::events)]++,
+  chunk_.begin_message(channel_id::events, sequences_[mcap::index_of(channel_id::events)]++,
                        wall_.at(time_ns));
   mcap::put_event(chunk_.text(), transport_.as_event(time_ns), wall_.ahead_ns());
   chunk_.end_message();
@@ -268,7 +268,8 @@ result<void> recording_writer::file_writer::add_transform() {
   const auto begin_ns = static_cast<std::int64_t>(chunk_.first_ns());
   mcap::open_chunk first;
   channels_.put_channels(first.text());
-  first.begin_message(topic::tf_static, sequences_[mcap::index_of(topic::tf_static)]++, begin_ns);
+  first.begin_message(channel_id::tf_static, sequences_[mcap::index_of(channel_id::tf_static)]++,
+                      begin_ns);
   put_tf_message({.stamp_ns = begin_ns,
                   .frame_id = options_.robot_frame_id,
                   .child_frame_id = options_.frame_id,

@@ -67,7 +67,7 @@ class recording_writer::file_writer {
  public:
   file_writer(mcap::mcap_file first, std::string_view path, const recording_options& options);
 
-  void put_bytes(direction way, bytes data, std::int64_t time_ns) noexcept;
+  void put_bytes(direction direction, bytes data, std::int64_t time_ns) noexcept;
   void event(const recorded_event& what) noexcept;
   void scan(const g4lidar::scan& revolution) noexcept;
   void odometry(const stamped_odometry& what) noexcept;
@@ -76,7 +76,7 @@ class recording_writer::file_writer {
   void metadata(std::string_view name,
                 std::span<const std::pair<std::string, std::string>> words) noexcept;
   /// What sends the bytes: the file begins again if it is empty and for another model.
-  [[nodiscard]] result<void> take_model(const model& which);
+  [[nodiscard]] result<void> take_model(const model& model);
   void set_wall_clock(std::int64_t ahead_ns) noexcept { wall_.set(ahead_ns); }
   result<void> flush() noexcept;
   result<void> close() noexcept;
@@ -98,8 +98,8 @@ class recording_writer::file_writer {
   template <class Work>
   result<void> guarded(Work work) noexcept;
   template <class Put>
-  void put(mcap::topic id, std::int64_t time_ns, std::size_t size, Put put) noexcept;
-  [[nodiscard]] bool has_channel(mcap::topic id) noexcept;
+  void put(mcap::channel_id id, std::int64_t time_ns, std::size_t size, Put put) noexcept;
+  [[nodiscard]] bool has_channel(mcap::channel_id id) noexcept;
   void begin_chunk(std::int64_t time_ns);
   [[nodiscard]] result<void> add_transform();
   [[nodiscard]] result<void> end_chunk();

@@ -33,7 +33,7 @@ open_chunk::open_chunk() {
   for (auto& places : places_) places.reserve(most_messages);
 }
 
-void open_chunk::begin_message(topic id, std::uint32_t sequence, std::int64_t wall_ns) {
+void open_chunk::begin_message(channel_id id, std::uint32_t sequence, std::int64_t wall_ns) {
   const auto time_ns = static_cast<std::uint64_t>(std::max<std::int64_t>(wall_ns, 0));
   places_[index_of(id)].push_back({time_ns, text_.size()});
   begun_ = text_.begin(opcode::message);

@@ -34,7 +34,7 @@ class open_chunk {
   }
 
   /// Begins a message; write its data to text(), and then call end_message().
-  void begin_message(topic id, std::uint32_t sequence, std::int64_t wall_ns);
+  void begin_message(channel_id id, std::uint32_t sequence, std::int64_t wall_ns);
   void end_message() { text_.end(begun_); }
   [[nodiscard]] record_text& text() noexcept { return text_; }
   void clear() noexcept;
@@ -47,7 +47,7 @@ class open_chunk {
     std::uint64_t wall_ns;
     std::uint64_t offset;
   };
-  [[nodiscard]] std::span<const place> places(topic id) const noexcept {
+  [[nodiscard]] std::span<const place> places(channel_id id) const noexcept {
     return places_[index_of(id)];
   }
 

@@ -42,21 +42,21 @@ void put_recorded_bytes(record_text& out, bytes data, std::int64_t time_ns) {
   g4lidar::put_recorded_bytes(data, time_ns, out.memory());
 }
 
-void put_event(record_text& out, const recorded_event& what, std::int64_t wall_ahead_ns) {
+void put_event(record_text& out, const recorded_event& event, std::int64_t wall_ahead_ns) {
   cdr_writer message(out.memory());
-  message.put(what.time_ns);
+  message.put(event.time_ns);
   message.put(wall_ahead_ns);
-  message.put(what.baud);
-  message.put(what.sample_rate_hz);
-  message.put(what.unparsed);
-  message.put(what.events);
-  message.put(std::uint8_t{what.delivers});
-  message.put(name_of(what.what));
-  message.put(name_of(what.reason));
-  message.put(what.name.substr(0, longest_name));
-  message.put(std::uint8_t{what.zero.has_value()});
-  message.put(what.zero.value_or(zero_angle{}).cdeg);
-  message.put(std::uint8_t{what.counts_times});
+  message.put(event.baud);
+  message.put(event.sample_rate_hz);
+  message.put(event.unparsed);
+  message.put(event.events);
+  message.put(std::uint8_t{event.delivers});
+  message.put(name_of(event.what));
+  message.put(name_of(event.reason));
+  message.put(event.name.substr(0, longest_name));
+  message.put(std::uint8_t{event.zero.has_value()});
+  message.put(event.zero.value_or(zero_angle{}).cdeg);
+  message.put(std::uint8_t{event.counts_times});
 }
 
 std::optional<recorded_bytes> recorded_bytes_from(bytes message) noexcept {

@@ -21,7 +21,7 @@ namespace g4lidar::mcap {
 inline constexpr std::size_t recorded_bytes_header_size = 4 + 8 + 4;
 
 void put_recorded_bytes(record_text& out, bytes data, std::int64_t time_ns);
-void put_event(record_text& out, const recorded_event& what, std::int64_t wall_ahead_ns);
+void put_event(record_text& out, const recorded_event& event, std::int64_t wall_ahead_ns);
 
 /// A message of bytes: their time, and the bytes, a view of `message`.
 struct recorded_bytes {

@@ -72,18 +72,18 @@ std::optional<sample_rate> rate_from(std::string_view text) noexcept {
   return static_cast<sample_rate>(is_code ? g4_model.rates.entries[*value].hz : *value);
 }
 
-void take_serial(device_information& who, std::string_view text) noexcept {
+void take_serial(device_information& information, std::string_view text) noexcept {
   const bool is_digits =
-      text.size() == who.serial_digits.size() &&
+      text.size() == information.serial_digits.size() &&
       std::ranges::all_of(text, [](char digit) { return digit >= '0' && digit <= '9'; });
-  if (is_digits) std::ranges::copy(text, who.serial_digits.begin());
+  if (is_digits) std::ranges::copy(text, information.serial_digits.begin());
 }
 
-void take_firmware(device_information& who, std::string_view text) noexcept {
+void take_firmware(device_information& information, std::string_view text) noexcept {
   const std::size_t dot = std::min(text.find('.'), text.size());
-  who.firmware_major = number_in<std::uint8_t>(text.substr(0, dot)).value_or(0);
+  information.firmware_major = number_in<std::uint8_t>(text.substr(0, dot)).value_or(0);
   if (dot < text.size()) {
-    who.firmware_minor = number_in<std::uint8_t>(text.substr(dot + 1)).value_or(0);
+    information.firmware_minor = number_in<std::uint8_t>(text.substr(dot + 1)).value_or(0);
   }
 }
 

@@ -47,11 +47,11 @@ class record_text {
   void end(std::size_t begun) {
     set(begun - sizeof(Length), static_cast<Length>(text_.size() - begun));
   }
-  /// Overwrites the bytes at `at`.
+  /// Overwrites the bytes at `offset`.
   template <class Number>
-  void set(std::size_t at, Number value) {
+  void set(std::size_t offset, Number value) {
     for (std::size_t i = 0; i < sizeof(Number); ++i) {
-      text_[at + i] = static_cast<std::uint8_t>(value >> (8 * i));
+      text_[offset + i] = static_cast<std::uint8_t>(value >> (8 * i));
     }
   }
 

@@ -24,19 +24,19 @@ struct budget {
   }
 };
 
-void read_group(chunk_source& file, std::uint64_t at, std::uint64_t end, budget& left,
+void read_group(chunk_source& file, std::uint64_t position, std::uint64_t end, budget& left,
                 const taker& take) {
-  while (at < end) {
-    const auto channel = file.record_at(at, opcode::channel);
+  while (position < end) {
+    const auto channel = file.record_at(position, opcode::channel);
     if (!left.spend(record_header_size + channel.size())) return;
     if (!channel.empty()) {
       take(opcode::channel, field_reader(channel));
-      at += record_header_size + channel.size();
+      position += record_header_size + channel.size();
       continue;
     }
-    const auto index = file.record_at(at, opcode::metadata_index);
+    const auto index = file.record_at(position, opcode::metadata_index);
     if (index.empty()) return;
-    at += record_header_size + index.size();
+    position += record_header_size + index.size();
     const std::uint64_t offset = field_reader(index).take<std::uint64_t>();
     const auto metadata = file.record_at(offset, opcode::metadata);
     if (!left.spend(metadata.size())) return;

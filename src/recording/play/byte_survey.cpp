@@ -25,14 +25,14 @@ recognised_model model_of(const stream_survey& seen) noexcept {
           seen.layout().frequency_dhz()};
 }
 
-stream_survey surveyed_at(const owned_fd& fd, off_t at) {
+stream_survey surveyed_at(const owned_fd& fd, off_t offset) {
   constexpr std::size_t enough = std::size_t{64} << 10U;
   constexpr off_t most = off_t{1} << 20U;
   stream_survey seen;
   std::vector<std::uint8_t> piece(enough);
   for (off_t read = 0; read < most && (read == 0 || seen.layout().sample_bytes() == 0);) {
     const ssize_t count =
-        uninterrupted([&] { return ::pread(fd.get(), piece.data(), piece.size(), at + read); });
+        uninterrupted([&] { return ::pread(fd.get(), piece.data(), piece.size(), offset + read); });
     if (count <= 0) break;
     seen.received(bytes(piece).first(static_cast<std::size_t>(count)));
     read += count;

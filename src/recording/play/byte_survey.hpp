@@ -17,8 +17,8 @@ namespace g4lidar {
 
 /// Without waiting for a writer of a pipe; "-" is standard input.
 [[nodiscard]] owned_fd open_bytes(const std::string& name) noexcept;
-/// Of the regular file from `at` on: the first 64 KiB, and up to 1 MiB until the size of a sample is decided.
-[[nodiscard]] stream_survey surveyed_at(const owned_fd& fd, off_t at);
+/// Of the regular file from `offset` on: the first 64 KiB, and up to 1 MiB until the size of a sample is decided.
+[[nodiscard]] stream_survey surveyed_at(const owned_fd& fd, off_t offset);
 [[nodiscard]] recognised_model model_of(const stream_survey& seen) noexcept;
 /// Why a file with these bytes cannot be read; nothing if a part of it may be packets.
 [[nodiscard]] std::optional<error> refusal_of(const stream_survey& seen, std::string_view title,

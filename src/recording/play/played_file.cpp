@@ -27,8 +27,8 @@ bool is_speed(double speed) noexcept {
 error bad(std::string_view what) noexcept { return {task::configuring, problem::bad_option, what}; }
 
 /// The time of the clock at the beginning of what is played.
-std::int64_t begin_of(const item_source& from, std::int64_t from_ns) noexcept {
-  return detail::saturating_add(from.first_ns(), std::max<std::int64_t>(from_ns, 0));
+std::int64_t begin_of(const item_source& items, std::int64_t from_ns) noexcept {
+  return detail::saturating_add(items.first_ns(), std::max<std::int64_t>(from_ns, 0));
 }
 
 }  // namespace
@@ -92,11 +92,11 @@ result<void> item_rounds::seek(std::int64_t from_ns) noexcept {
 
 // ---- the file ----
 
-played_file::played_file(std::unique_ptr<item_source> from, std::string_view path,
-                         const playback_options& how, const recorded_device& device,
+played_file::played_file(std::unique_ptr<item_source> items, std::string_view path,
+                         const playback_options& options, const recorded_device& device,
                          std::shared_ptr<waker> waits)
-    : items_(std::move(from), path, how, waits),
-      clock_(how.speed, begin_of(items_.source(), how.from_ns)),
+    : items_(std::move(items), path, options, waits),
+      clock_(options.speed, begin_of(items_.source(), options.from_ns)),
       waits_(std::move(waits)),
       due_(timerfd_create(CLOCK_MONOTONIC, TFD_CLOEXEC | TFD_NONBLOCK)),
       device_(device) {

@@ -52,9 +52,9 @@ class item_source {
 class item_rounds {
  public:
   /// A wake-up of `waits` also ends the reading.
-  item_rounds(std::unique_ptr<item_source> from, std::string_view path, const playback_options& how,
-              std::shared_ptr<waker> waits)
-      : from_(std::move(from)), path_(path), options_(how), waits_(std::move(waits)) {}
+  item_rounds(std::unique_ptr<item_source> items, std::string_view path,
+              const playback_options& options, std::shared_ptr<waker> waits)
+      : from_(std::move(items)), path_(path), options_(options), waits_(std::move(waits)) {}
 
   /// The next item, with its time in the current round; null at the end, and after a failure. Valid until
   /// pop(). Reads without bytes are skipped.
@@ -130,8 +130,9 @@ class file_player final : public player {
 /// The common part of a connector, its transport and its player: the file, its clock, and its events.
 class played_file final : public recorded_event_source {
  public:
-  played_file(std::unique_ptr<item_source> from, std::string_view path, const playback_options& how,
-              const recorded_device& device, std::shared_ptr<waker> waits);
+  played_file(std::unique_ptr<item_source> items, std::string_view path,
+              const playback_options& options, const recorded_device& device,
+              std::shared_ptr<waker> waits);
 
   [[nodiscard]] bool is_open() const noexcept { return waits_->is_open() && due_.get() >= 0; }
   [[nodiscard]] int native_handle() const noexcept { return due_.get(); }

@@ -181,7 +181,7 @@ result<std::unique_ptr<connector>> open_raw_bytes(const std::string& name,
                                                   std::optional<std::uint32_t> sample_rate_hz,
                                                   const playback_options& options,
                                                   std::function<bool()> is_cancelled,
-                                                  const model* which) {
+                                                  const model* lidar_model) {
   if (const auto wrong = problem_with(options)) return tl::unexpected(*wrong);
   if (sample_rate_hz && (*sample_rate_hz < 1 || *sample_rate_hz > 1'000'000)) {
     return failure(task::configuring, problem::bad_option,
@@ -197,7 +197,8 @@ result<std::unique_ptr<connector>> open_raw_bytes(const std::string& name,
   std::string title = name == "-" ? "standard input" : name;
   if (!is_known || !S_ISREG(file.st_mode)) {
     auto port = std::make_unique<pipe_transport>(std::move(fd), std::move(title));
-    if (which != nullptr) return std::make_unique<pipe_connector>(std::move(port), about(*which));
+    if (lidar_model != nullptr)
+      return std::make_unique<pipe_connector>(std::move(port), about(*lidar_model));
     const auto found = port->recognise(is_cancelled);
     if (!found) return tl::unexpected(found.error());
     return std::make_unique<pipe_connector>(std::move(port), about(*found));
@@ -207,8 +208,8 @@ result<std::unique_ptr<connector>> open_raw_bytes(const std::string& name,
   const ssize_t begun =
       uninterrupted([&] { return ::pread(fd.get(), begin.data(), begin.size(), at); });
   if (begun > 0 && begins_recording(bytes(begin))) return a_recording(task::opening);
-  recognised_model found{which};
-  if (which == nullptr) {
+  recognised_model found{lidar_model};
+  if (lidar_model == nullptr) {
     const stream_survey seen = surveyed_at(fd, at);
     if (const auto why = refusal_of(seen, title)) return tl::unexpected(*why);
     found = model_of(seen);
@@ -221,9 +222,9 @@ result<std::unique_ptr<connector>> open_raw_bytes(const std::string& name,
                                       file.st_mtim.tv_sec * second_ns + file.st_mtim.tv_nsec,
                                       options.to_ns, std::move(is_cancelled), sent_by);
   if (auto moved = items->seek(options.from_ns); !moved) return tl::unexpected(moved.error());
-  return connect_to(std::make_shared<played_file>(std::move(items), title, options,
-                                                  which != nullptr ? about(*which) : about(found),
-                                                  std::move(waits)));
+  return connect_to(std::make_shared<played_file>(
+      std::move(items), title, options, lidar_model != nullptr ? about(*lidar_model) : about(found),
+      std::move(waits)));
 }
 
 }  // namespace g4lidar

@@ -43,8 +43,8 @@ std::optional<recorded_device> device_in(std::string_view path,
 
 class recorded_items final : public item_source {
  public:
-  recorded_items(recording_reader opened, std::string_view path, reading_options how)
-      : reader_(std::move(opened)), path_(path), how_(std::move(how)) {}
+  recorded_items(recording_reader opened, std::string_view path, reading_options options)
+      : reader_(std::move(opened)), path_(path), how_(std::move(options)) {}
 
   [[nodiscard]] result<std::optional<recorded_item>> next() noexcept override {
     return reader_.next();

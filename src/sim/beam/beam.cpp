@@ -151,13 +151,13 @@ double correction_deg(double range_mm, const beam_shape& shape) noexcept {
   return atan_deg(shape.offset_mm / range_mm - shape.slope);
 }
 
-seen_wall as_seen(const wall& w, const pose& from, const sin_cos& heading,
+seen_wall as_seen(const wall& w, const pose& viewpoint, const sin_cos& heading,
                   std::uint32_t index) noexcept {
   const auto ahead = [&](double x_m, double y_m) {
-    return 1000.0 * ((x_m - from.x_m) * heading.cosine + (y_m - from.y_m) * heading.sine);
+    return 1000.0 * ((x_m - viewpoint.x_m) * heading.cosine + (y_m - viewpoint.y_m) * heading.sine);
   };
   const auto right = [&](double x_m, double y_m) {
-    return 1000.0 * ((x_m - from.x_m) * heading.sine - (y_m - from.y_m) * heading.cosine);
+    return 1000.0 * ((x_m - viewpoint.x_m) * heading.sine - (y_m - viewpoint.y_m) * heading.cosine);
   };
   const double x1 = ahead(w.x1_m, w.y1_m);
   const double y1 = right(w.x1_m, w.y1_m);

@@ -29,8 +29,8 @@ struct seen_disc {
   double radius;
 };
 
-/// `heading` is that of `from`.
-[[nodiscard]] G4LIDAR_HIDDEN seen_wall as_seen(const wall& w, const pose& from,
+/// `heading` is that of `viewpoint`.
+[[nodiscard]] G4LIDAR_HIDDEN seen_wall as_seen(const wall& w, const pose& viewpoint,
                                                const sin_cos& heading,
                                                std::uint32_t index) noexcept;
 

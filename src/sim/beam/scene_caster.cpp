@@ -61,10 +61,10 @@ struct G4LIDAR_HIDDEN scene_caster::way_of_beam {
   double e_x, e_y;
   double u_x, u_y;  // n + c e
 
-  way_of_beam(double first_level_deg, const beam_shape& shape, const pose& from,
+  way_of_beam(double first_level_deg, const beam_shape& shape, const pose& viewpoint,
               bool mirrored) noexcept
-      : lidar(from),
-        heading(sin_cos_deg(from.heading_deg)),
+      : lidar(viewpoint),
+        heading(sin_cos_deg(viewpoint.heading_deg)),
         is_mirrored(mirrored),
         ray(beam_at(first_level_deg, shape)),
         strip_m(shape.offset_mm * 1e-3) {
@@ -127,13 +127,13 @@ pose scene_caster::lidar_at(std::int64_t time_ns) const noexcept {
 }
 
 std::optional<sighting> scene_caster::cast_at_walls(double first_level_deg,
-                                                    const way_of_beam& way) noexcept {
+                                                    const way_of_beam& beam) noexcept {
   if (path_.empty()) {
-    return (way.is_mirrored ? mirrored_caster_ : caster_).cast(first_level_deg);
+    return (beam.is_mirrored ? mirrored_caster_ : caster_).cast(first_level_deg);
   }
   std::size_t count = 0;
   for (std::uint32_t i = 0; i < walls_.size(); ++i) {
-    if (way.may_meet(walls_[i])) near_beam_[count++] = way.seen(walls_[i], i);
+    if (beam.may_meet(walls_[i])) near_beam_[count++] = beam.seen(walls_[i], i);
   }
   const auto last = near_beam_.begin() + static_cast<std::ptrdiff_t>(count);
   std::sort(near_beam_.begin(), last, is_tried_before);

@@ -18,19 +18,19 @@ class answerer {
 
   /// Answers the command `code`, `later_ns` from now. Passes what is to be sent at once to `send`.
   template <class Send>
-  void answer(std::uint8_t code, answer_bytes what, std::int64_t later_ns, std::int64_t now_ns,
+  void answer(std::uint8_t code, answer_bytes answer, std::int64_t later_ns, std::int64_t now_ns,
               Send send) noexcept {
     if (queue.begin_answer()) later_ns += options_.first_answer_ns;
     if (faults_.strike(fault_kind::mute, code) != nullptr) return;
-    if (faults_.strike(fault_kind::wrong, code) != nullptr) what = another_than(what);
+    if (faults_.strike(fault_kind::wrong, code) != nullptr) answer = another_than(answer);
     const bool twice = faults_.strike(fault_kind::twice, code) != nullptr;
     const fault* const late = faults_.strike(fault_kind::late);
     if (late != nullptr) later_ns += late->amount;
     for (int times = twice ? 2 : 1; times > 0; --times) {
       if (later_ns > 0) {
-        queue.add(what, now_ns + later_ns);
+        queue.add(answer, now_ns + later_ns);
       } else {
-        send(what);
+        send(answer);
       }
     }
   }

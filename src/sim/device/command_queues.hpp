@@ -7,18 +7,18 @@
 #include <cstdint>
 #include <utility>
 
+#include "command_effects.hpp"
 #include "g4lidar/core/bytes.hpp"
 #include "g4lidar/core/command.hpp"
 #include "g4lidar/sim/device.hpp"
 #include "line_receiver.hpp"
 #include "ring.hpp"
-#include "settings.hpp"
 #include "sim/purpose.hpp"
 
 namespace g4lidar::sim {
 
 /// A command that was received, and is due for execution.
-struct pending_command {
+struct due_command {
   std::int64_t due_ns;
   std::int64_t asked_ns;
   std::uint8_t code;
@@ -70,8 +70,8 @@ class command_receiver {
     return commands_.empty() ? forever_ns : commands_.front().due_ns;
   }
   /// Takes this command.
-  [[nodiscard]] pending_command take_command() noexcept {
-    const pending_command due = commands_.front();
+  [[nodiscard]] due_command take_command() noexcept {
+    const due_command due = commands_.front();
     commands_.pop();
     return due;
   }
@@ -100,7 +100,7 @@ class command_receiver {
   std::int64_t free_ns_ = 0;  // the end of the last byte
   ring<host_byte, 1'024> bytes_;
   bool start_byte_seen_ = false;
-  ring<pending_command, 64> commands_;
+  ring<due_command, 64> commands_;
 };
 
 /// Answers that are sent later.
@@ -112,10 +112,10 @@ class answer_queue {
   [[nodiscard]] bool begin_answer() noexcept { return !std::exchange(has_answered_, true); }
 
   /// An answer beyond the capacity is lost.
-  void add(const answer_bytes& what, std::int64_t due_ns) noexcept {
+  void add(const answer_bytes& answer, std::int64_t due_ns) noexcept {
     for (late_answer& place : answers_) {
       if (place.due_ns != forever_ns) continue;
-      place = {due_ns, what};
+      place = {due_ns, answer};
       next_ns_ = std::min(next_ns_, due_ns);
       return;
     }

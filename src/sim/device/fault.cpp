@@ -113,10 +113,10 @@ std::optional<std::int64_t> read_command(std::string_view text) noexcept {
   return text.size() == 2 && code != 0 ? std::optional(code) : std::nullopt;
 }
 
-std::optional<std::int64_t> read_amount(std::string_view text, amount_is what) noexcept {
-  if (what == amount_is::time) return read_time_ns(text);
-  if (what == amount_is::command) return read_command(text);
-  if (what == amount_is::health) {
+std::optional<std::int64_t> read_amount(std::string_view text, amount_is amount) noexcept {
+  if (amount == amount_is::time) return read_time_ns(text);
+  if (amount == amount_is::command) return read_command(text);
+  if (amount == amount_is::health) {
     if (text == "warning") return 1;
     if (text == "error") return 2;
   }

@@ -84,33 +84,33 @@ std::uint64_t fault_injector::draw(fault_kind kind, std::uint64_t count) noexcep
   return 0;
 }
 
-void fault_injector::damage(entry& by, passed_byte& passing) noexcept {
+void fault_injector::damage(entry& rule, passed_byte& passing) noexcept {
   std::uint8_t& last = passing.bytes[passing.count == 2 ? 1 : 0];
-  switch (by.what.kind) {
+  switch (rule.what.kind) {
     case fault_kind::flip:
-      if (by.random.uniform() >= by.what.rate) return;
-      last = static_cast<std::uint8_t>(last ^ 1U << (by.random.next() >> 61));
+      if (rule.random.uniform() >= rule.what.rate) return;
+      last = static_cast<std::uint8_t>(last ^ 1U << (rule.random.next() >> 61));
       passing.damaged = true;
       return;
     case fault_kind::drop:
-      if (by.random.uniform() >= by.what.rate) return;
+      if (rule.random.uniform() >= rule.what.rate) return;
       passing.count = static_cast<std::uint8_t>(passing.count - (passing.count > 0 ? 1U : 0U));
       passing.damaged = true;
       return;
     case fault_kind::insert:
-      if (by.random.uniform() >= by.what.rate || passing.count != 1) return;
-      passing = {{random_byte(by.random), passing.bytes[0]}, 2, true, passing.damaged};
+      if (rule.random.uniform() >= rule.what.rate || passing.count != 1) return;
+      passing = {{random_byte(rule.random), passing.bytes[0]}, 2, true, passing.damaged};
       return;
     case fault_kind::burst:
-      if (by.left == 0 && by.random.uniform() < by.what.rate) by.left = by.what.amount;
-      if (by.left == 0) return;
-      --by.left;
-      last = random_byte(by.random);
+      if (rule.left == 0 && rule.random.uniform() < rule.what.rate) rule.left = rule.what.amount;
+      if (rule.left == 0) return;
+      --rule.left;
+      last = random_byte(rule.random);
       passing.damaged = true;
       return;
     default:  // baud: the host samples at the wrong times
-      last = random_byte(by.random);
-      if (passing.count > 0 && by.random.uniform() < 0.4) --passing.count;
+      last = random_byte(rule.random);
+      if (passing.count > 0 && rule.random.uniform() < 0.4) --passing.count;
       passing.damaged = true;
       return;
   }

@@ -51,7 +51,7 @@ class fault_injector {
     std::int64_t left = 0;  // remaining bytes of a burst
     bool at_work = false;
   };
-  void damage(entry& by, passed_byte& passing) noexcept;
+  void damage(entry& rule, passed_byte& passing) noexcept;
 
   std::vector<entry> entries_;
   std::int64_t now_ns_ = -1;

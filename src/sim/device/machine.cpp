@@ -54,8 +54,8 @@ device::machine::machine(const world& scene, const device_options& wanted,
 
 device::machine::event device::machine::next_event() const noexcept {
   event first{forever_ns, happening::fault_edge};
-  const auto consider = [&first](std::int64_t at_ns, happening what) {
-    if (at_ns < first.at_ns) first = {at_ns, what};
+  const auto consider = [&first](std::int64_t at_ns, happening kind) {
+    if (at_ns < first.at_ns) first = {at_ns, kind};
   };
   consider(faults.next_edge_ns(), happening::fault_edge);
   consider(from_host_.next_byte_ns(), happening::host_byte);

@@ -10,12 +10,12 @@
 
 #include "answerer.hpp"
 #include "bridge.hpp"
+#include "command_effects.hpp"
 #include "command_queues.hpp"
 #include "fault_injector.hpp"
 #include "g4lidar/sim/device.hpp"
 #include "host_port.hpp"
 #include "motor.hpp"
-#include "settings.hpp"
 #include "transmitter.hpp"
 
 namespace g4lidar::sim {
@@ -126,12 +126,12 @@ class G4LIDAR_HIDDEN device::machine {
 
   // Commands.
   void host_byte_arrives() noexcept;
-  void execute(const pending_command& asked_for) noexcept;
+  void execute(const due_command& asked_for) noexcept;
   [[nodiscard]] bool obey(command code) noexcept;
   [[nodiscard]] bool obey_setting(command code) noexcept;
   void use_settings() noexcept;
   [[nodiscard]] bool obey_start() noexcept;
-  void answer(command to, const answer_bytes& what, std::int64_t later_ns = 0) noexcept;
+  void answer(command to, const answer_bytes& answer, std::int64_t later_ns = 0) noexcept;
 
   // Scanning.
   void begin_scan(bool at_full_speed = false) noexcept;

@@ -25,7 +25,7 @@ void device::machine::host_byte_arrives() noexcept {
                      });
 }
 
-void device::machine::execute(const pending_command& asked_for) noexcept {
+void device::machine::execute(const due_command& asked_for) noexcept {
   const bool scanning = is_scanning();
   const bool obeyed = obey(static_cast<command>(asked_for.code));
   log.add({asked_for.asked_ns, asked_for.code, obeyed, scanning});
@@ -107,8 +107,9 @@ bool device::machine::obey_start() noexcept {
   return true;
 }
 
-void device::machine::answer(command to, const answer_bytes& what, std::int64_t later_ns) noexcept {
-  answers_.answer(static_cast<std::uint8_t>(to), what, later_ns, now_ns_,
+void device::machine::answer(command to, const answer_bytes& answer,
+                             std::int64_t later_ns) noexcept {
+  answers_.answer(static_cast<std::uint8_t>(to), answer, later_ns, now_ns_,
                   [this](const answer_bytes& now) { output.send(now, is_scanning(), now_ns_); });
 }
 

@@ -22,14 +22,14 @@ const simulated_model* find_model(std::string_view word) noexcept {
 
 // The usual rate, or the fastest one that the connection carries: 10 bits a byte, and a quarter of a
 // byte of each sample for the beginning of its packet.
-std::size_t first_rate(const simulated_model& of, const sample_code& code) noexcept {
+std::size_t first_rate(const simulated_model& simulated, const sample_code& code) noexcept {
   const std::size_t quarters = 4 * code.size() + 1;
   std::size_t best = 0;
-  for (std::size_t i = 0; i < of.rates.rows.size(); ++i) {
-    const std::uint32_t hz = of.rates.rows[i].hz;
+  for (std::size_t i = 0; i < simulated.rates.rows.size(); ++i) {
+    const std::uint32_t hz = simulated.rates.rows[i].hz;
     if (hz == 0) break;
-    if (hz == of.rates.usual_hz) return i;
-    if (hz * quarters * 10 / 4 <= of.bauds[0]) best = i;
+    if (hz == simulated.rates.usual_hz) return i;
+    if (hz * quarters * 10 / 4 <= simulated.bauds[0]) best = i;
   }
   return best;
 }
@@ -54,9 +54,10 @@ command_set commands_of(const simulated_model& of) noexcept {
   return all;
 }
 
-bool has_version(const device_information& info, const simulated_model* of) noexcept {
-  return of != nullptr && info.firmware_major == of->version.major &&
-         info.firmware_minor == of->version.minor && info.hardware == of->version.hardware;
+bool has_version(const device_information& info, const simulated_model* simulated) noexcept {
+  return simulated != nullptr && info.firmware_major == simulated->version.major &&
+         info.firmware_minor == simulated->version.minor &&
+         info.hardware == simulated->version.hardware;
 }
 
 unsigned digits(const device_information& info, std::size_t from, std::size_t count) noexcept {

@@ -115,34 +115,36 @@ struct simulated_model {
 
 namespace rows {
 
-// `of` with another name and other ids.
-[[nodiscard]] constexpr simulated_model named(simulated_model of, std::string_view word,
+// `model` with another name and other ids.
+[[nodiscard]] constexpr simulated_model named(simulated_model model, std::string_view word,
                                               std::uint8_t id, std::uint8_t other_id = 0) noexcept {
-  of.word = word;
-  of.ids = {id, other_id};
-  return of;
+  model.word = word;
+  model.ids = {id, other_id};
+  return model;
 }
 
-[[nodiscard]] constexpr simulated_model with_range(simulated_model of, std::uint16_t nearest_mm,
+[[nodiscard]] constexpr simulated_model with_range(simulated_model model, std::uint16_t nearest_mm,
                                                    std::uint16_t farthest_mm) noexcept {
-  of.range = {nearest_mm, farthest_mm};
-  return of;
+  model.range = {nearest_mm, farthest_mm};
+  return model;
 }
 
-[[nodiscard]] constexpr simulated_model with_rate(simulated_model of, std::uint32_t hz) noexcept {
-  of.rates = {{{{hz}}}, hz};
-  return of;
+[[nodiscard]] constexpr simulated_model with_rate(simulated_model model,
+                                                  std::uint32_t hz) noexcept {
+  model.rates = {{{{hz}}}, hz};
+  return model;
 }
 
-[[nodiscard]] constexpr simulated_model with_baud(simulated_model of, std::uint32_t baud) noexcept {
-  of.bauds = {baud};
-  return of;
+[[nodiscard]] constexpr simulated_model with_baud(simulated_model model,
+                                                  std::uint32_t baud) noexcept {
+  model.bauds = {baud};
+  return model;
 }
 
-[[nodiscard]] constexpr simulated_model with_zero_angle(simulated_model of,
+[[nodiscard]] constexpr simulated_model with_zero_angle(simulated_model model,
                                                         std::uint8_t divisor) noexcept {
-  of.commands.zero_divisor = divisor;
-  return of;
+  model.commands.zero_divisor = divisor;
+  return model;
 }
 
 // G4, G4 Pro, G5, and the models that differ from them in some numbers.

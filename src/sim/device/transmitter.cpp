@@ -34,12 +34,12 @@ void transmitter::send_packet(std::int64_t now_ns) noexcept {
   line.send(*packet, now_ns);
 }
 
-void transmitter::send(const answer_bytes& what, bool is_scanning, std::int64_t now_ns) noexcept {
+void transmitter::send(const answer_bytes& answer, bool is_scanning, std::int64_t now_ns) noexcept {
   if (!is_scanning || options_.while_scanning == disturbance::between) {
-    return line.send(what.view(), now_ns);
+    return line.send(answer.view(), now_ns);
   }
   if (options_.while_scanning == disturbance::drops) line.cut_front();
-  line.interject(what, now_ns);
+  line.interject(answer, now_ns);
 }
 
 void transmitter::byte_sent(bridge& to_host, std::uint32_t host_baud,

@@ -31,7 +31,7 @@ class transmitter {
   /// The packet that was measured is complete: it is sent, or a fault changes that.
   void send_packet(std::int64_t now_ns) noexcept;
   /// Sends an answer; during a scan as the options state.
-  void send(const answer_bytes& what, bool is_scanning, std::int64_t now_ns) noexcept;
+  void send(const answer_bytes& answer, bool is_scanning, std::int64_t now_ns) noexcept;
   /// A byte has been sent: the bridge, at the rate of the host, receives it, and the next one follows.
   void byte_sent(bridge& to_host, std::uint32_t host_baud, std::int64_t now_ns) noexcept;
   /// When a host at another rate receives another byte although nothing is sent any more.

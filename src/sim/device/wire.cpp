@@ -36,22 +36,22 @@ void wire::send(bytes content, std::int64_t now_ns) noexcept {
   if (!busy_) begin(now_ns);
 }
 
-void wire::send(const transmission& what, std::int64_t now_ns) noexcept {
+void wire::send(const transmission& sending, std::int64_t now_ns) noexcept {
   if (queue_.full()) return;
   transmission& to = queue_.push();
-  to.data = what.data;
-  to.size = what.size;
-  to.begin = what.begin;
-  to.count = what.count;
-  to.zero = what.zero;
-  to.damaged = what.damaged;
-  to.packet = what.packet;
-  std::copy_n(what.truths.begin(), what.count, to.truths.begin());
+  to.data = sending.data;
+  to.size = sending.size;
+  to.begin = sending.begin;
+  to.count = sending.count;
+  to.zero = sending.zero;
+  to.damaged = sending.damaged;
+  to.packet = sending.packet;
+  std::copy_n(sending.truths.begin(), sending.count, to.truths.begin());
   if (!busy_) begin(now_ns);
 }
 
-void wire::interject(const answer_bytes& what, std::int64_t now_ns) noexcept {
-  urgent_.push(what);
+void wire::interject(const answer_bytes& answer, std::int64_t now_ns) noexcept {
+  urgent_.push(answer);
   if (!busy_) begin(now_ns);
 }
 

@@ -8,9 +8,9 @@
 #include <optional>
 
 #include "g4lidar/sim/device.hpp"
+#include "command_effects.hpp"
 #include "g4lidar/sim/scanner.hpp"
 #include "ring.hpp"
-#include "settings.hpp"
 
 namespace g4lidar::sim {
 
@@ -38,9 +38,9 @@ class wire {
 
   /// To be sent after everything else.
   void send(bytes content, std::int64_t now_ns) noexcept;
-  void send(const transmission& what, std::int64_t now_ns) noexcept;
+  void send(const transmission& transmission, std::int64_t now_ns) noexcept;
   /// To be sent immediately, within the current output.
-  void interject(const answer_bytes& what, std::int64_t now_ns) noexcept;
+  void interject(const answer_bytes& answer, std::int64_t now_ns) noexcept;
   /// Discards output that has not begun; with `at_once`, also the rest of the current output.
   void cut(bool at_once) noexcept;
   /// Discards the rest of the current output.

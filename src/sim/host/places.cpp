@@ -6,8 +6,8 @@
 #include <system_error>
 #include <utility>
 
-#include "claim.hpp"
 #include "g4lidar/sim/setup.hpp"
+#include "name_claim.hpp"
 
 namespace g4lidar::sim {
 

@@ -13,7 +13,7 @@
 #include <cstdlib>
 #include <cstring>
 
-#include "claim.hpp"
+#include "name_claim.hpp"
 #include "served_port.hpp"
 #include "transport/custom_baud.hpp"
 
@@ -38,7 +38,7 @@ class pty final : public served_port {
       return failed("a pseudo-terminal");
     }
     name_ = name.data();
-    claim_ = claim(name_).hold();
+    claim_ = name_claim(name_).hold();
     watch_ = owned_fd(::inotify_init1(IN_NONBLOCK | IN_CLOEXEC));
     if (watch_ && ::inotify_add_watch(watch(), name.data(), IN_OPEN | IN_CLOSE) < 0) watch_.close();
     slave_ = owned_fd(::open(name.data(), O_RDWR | O_NOCTTY | O_CLOEXEC));

@@ -17,7 +17,7 @@
 
 #include <filesystem>
 
-#include "claim.hpp"
+#include "name_claim.hpp"
 #include "served_port.hpp"
 
 namespace g4lidar::sim {
@@ -66,7 +66,7 @@ result<owned_fd> claim_link_at(const std::string& link) {
   }
   std::array<char, 17> name{};
   std::snprintf(name.data(), name.size(), "%016llx", static_cast<unsigned long long>(hash));
-  owned_fd held = claim(name.data()).hold();
+  owned_fd held = name_claim(name.data()).hold();
   if (held) return held;
   const bool is_served = errno == EADDRINUSE;
   return failure(task::opening, is_served ? problem::busy : problem::system, link, errno);
@@ -82,11 +82,11 @@ void unpoint(const fs::path& link, const std::string& target) {
 class G4LIDAR_HIDDEN pty_port::state {
  public:
   /// At a link, without a link, or at a TCP address.
-  state(device of, const std::string& link) : simulated(std::move(of)), link_(link) {
+  state(device device, const std::string& link) : simulated(std::move(device)), link_(link) {
     simulated.host().ignore_dtr(0);
   }
-  state(device of, std::string address, std::uint16_t port)
-      : simulated(std::move(of)), address_(std::move(address)), port_(port) {
+  state(device device, std::string address, std::uint16_t port)
+      : simulated(std::move(device)), address_(std::move(address)), port_(port) {
     simulated.host().ignore_dtr(0);
   }
   ~state() { unplug(); }

@@ -10,11 +10,11 @@ namespace g4lidar::sim {
 namespace {
 
 /// Where it is wrong, and why, as far as an error has room.
-tl::unexpected<error> refused(problem what, const std::string& where, const std::string& why) {
+tl::unexpected<error> refused(problem code, const std::string& where, const std::string& why) {
   constexpr std::size_t longest = 159;
   std::string text = where + " (" + why + ")";
   if (text.size() > longest) text.replace(longest - 4, std::string::npos, "...)");
-  return failure(task::opening, what, text, 0, error_detail::simulated);
+  return failure(task::opening, code, text, 0, error_detail::simulated);
 }
 
 tl::unexpected<error> refused(const std::string& file, const world_error& wrong) {

@@ -20,11 +20,11 @@
 namespace g4lidar::sim {
 namespace {
 
-double distance_m(const wall& w, const pose& from) noexcept {
+double distance_m(const wall& w, const pose& viewpoint) noexcept {
   const double dx = w.x2_m - w.x1_m;
   const double dy = w.y2_m - w.y1_m;
-  const double to_x = from.x_m - w.x1_m;
-  const double to_y = from.y_m - w.y1_m;
+  const double to_x = viewpoint.x_m - w.x1_m;
+  const double to_y = viewpoint.y_m - w.y1_m;
   const double along = std::clamp((to_x * dx + to_y * dy) / (dx * dx + dy * dy), 0.0, 1.0);
   const double x = to_x - along * dx;
   const double y = to_y - along * dy;

@@ -91,10 +91,10 @@ std::optional<route::error_if_any> route::take(std::string_view word, std::strin
                                                std::size_t line_number) {
   const bool is_pose = word == "pose";
   if (!is_pose && word != "drive") return std::nullopt;
-  if (is_pose ? !commands_.empty() : !path_.empty()) {
+  if (is_pose ? !legs_.empty() : !path_.empty()) {
     return error_if_any("a path has lines 'pose' or lines 'drive', not both");
   }
-  if (path_.size() + commands_.size() == max_path_points) {
+  if (path_.size() + legs_.size() == max_path_points) {
     return error_if_any("the path has more than 100000 points");
   }
   return is_pose ? take_pose(rest) : take_drive(rest, line_number);
@@ -178,11 +178,11 @@ route::error_if_any route::take_drive(std::string_view rest, std::size_t line_nu
   if (what == action::arc && speed / at[0] * degrees_of_radian > max_turn_deg_per_s) {
     return "the robot would turn at more than 1000 degrees per second";
   }
-  commands_.push_back({what, amount, at[0], speed, line_number});
+  legs_.push_back({what, amount, at[0], speed, line_number});
   return std::nullopt;
 }
 
-void route::follow(const command& next) {
+void route::follow(const leg& next) {
   const path_point from = path_.back();
   const pose& start = from.robot.at;
   const double size = std::fabs(next.amount);
@@ -224,12 +224,12 @@ void route::follow(const command& next) {
 }
 
 std::optional<world_error> route::finish(const pose& start) {
-  if (commands_.empty()) {
+  if (legs_.empty()) {
     smooth(path_);
     return std::nullopt;
   }
   path_.push_back({0, {start, {}}});
-  for (const command& each : commands_) {
+  for (const leg& each : legs_) {
     follow(each);
     const path_point& end = path_.back();
     if (too_far(std::array{end.robot.at.x_m, end.robot.at.y_m})) {

@@ -28,7 +28,7 @@ class G4LIDAR_HIDDEN route {
 
  private:
   enum class action { forward, turn, arc, wait };
-  struct command {
+  struct leg {
     action what;
     double amount;  // m, degrees or seconds
     double radius_m;
@@ -38,10 +38,10 @@ class G4LIDAR_HIDDEN route {
 
   error_if_any take_pose(std::string_view rest);
   error_if_any take_drive(std::string_view rest, std::size_t line_number);
-  void follow(const command& next);
+  void follow(const leg& next);
 
   std::vector<path_point> path_;
-  std::vector<command> commands_;
+  std::vector<leg> legs_;
 };
 
 }  // namespace g4lidar::sim

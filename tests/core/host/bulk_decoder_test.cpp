@@ -288,7 +288,7 @@ TEST_P(BulkDecoder, TheOffsetOfZeroIsAdded) {
       EXPECT_FALSE(decoder.zero().angle());
       if (is_given) {
         decoder.zero().set({static_cast<std::int32_t>(std::lround(100 * deg))},
-                           zero_offset::known_by::user);
+                           zero_offset::stated_by::user);
         data = answer_of(-4);  // the user knows better
       } else {
         data = {0xA5, 0x5A, 5, 0, 0, 0x40, 0x81};

@@ -59,26 +59,28 @@ bool set_protection(lidar_link& link, std::int32_t wanted) {
 
 }  // namespace
 
-void kept_settings::remember(lidar_link& link, const model& which) {
+void kept_settings::remember(lidar_link& link, const model& model) {
   if (is_remembered_ || !link.is_two_way()) return;
   is_remembered_ = true;
   link.stop();
-  if (which.frequency.max_dhz != 0) at(setting::frequency).before = link.number(frequency_query);
-  if (which.rates.is_settable) at(setting::sample_rate).before = link.number(sample_rate_query);
+  if (model.frequency.max_dhz != 0) at(setting::frequency).before = link.number(frequency_query);
+  if (model.rates.is_settable) at(setting::sample_rate).before = link.number(sample_rate_query);
 }
 
-void kept_settings::learn_from(setting what, std::int32_t first_answer, std::int32_t values) {
-  if (!at(what).before) at(what).before = (first_answer + values - 1) % values;
+void kept_settings::learn_from(setting setting, std::int32_t first_answer, std::int32_t values) {
+  if (!at(setting).before) at(setting).before = (first_answer + values - 1) % values;
 }
 
-void kept_settings::has_none(setting what) { at(what).is_changed = at(what).before.has_value(); }
+void kept_settings::has_none(setting setting) {
+  at(setting).is_changed = at(setting).before.has_value();
+}
 
 bool kept_settings::is_changed() const { return std::ranges::any_of(all_, &kept::is_changed); }
 
 bool kept_settings::restore(lidar_link& link) {
   constexpr int tries = 3;
-  const auto set_back = [&](setting what, auto set, const value& wanted) {
-    kept& its = at(what);
+  const auto set_back = [&](setting setting, auto set, const value& wanted) {
+    kept& its = at(setting);
     if (its.is_changed && wanted) its.is_changed = !set(link, *wanted);
   };
   for (int i = 0; i < tries && is_changed() && !link.is_over(); ++i) {
@@ -91,17 +93,17 @@ bool kept_settings::restore(lidar_link& link) {
   return !is_changed();
 }
 
-std::string kept_settings::words(const model& which) const {
+std::string kept_settings::words(const model& model) const {
   std::string all;
-  const auto add = [&](setting what, const std::string& word) {
-    if (at(what).is_changed) all += (all.empty() ? "" : " ") + word;
+  const auto add = [&](setting setting, const std::string& word) {
+    if (at(setting).is_changed) all += (all.empty() ? "" : " ") + word;
   };
   const std::int32_t chz =
-      before(setting::frequency).value_or(0) + which.frequency.reply_offset_chz;
+      before(setting::frequency).value_or(0) + model.frequency.reply_offset_chz;
   const std::int32_t code = before(setting::sample_rate).value_or(all_rate_codes);
-  const std::uint32_t hz = rate_hz_of_code(which, static_cast<std::uint8_t>(code));
+  const std::uint32_t hz = rate_hz_of_code(model, static_cast<std::uint8_t>(code));
   add(setting::frequency, fmt::format("frequency={:g}", chz / 100.0));
-  add(setting::sample_rate, fmt::format("sample_rate={}", hz != 0 ? hz : first_rate_hz(which)));
+  add(setting::sample_rate, fmt::format("sample_rate={}", hz != 0 ? hz : first_rate_hz(model)));
   add(setting::protection,
       fmt::format("protection={}", before(setting::protection) == 0 ? "on" : "off"));
   return all;

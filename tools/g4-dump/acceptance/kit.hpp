@@ -59,7 +59,7 @@ struct step_result {
   std::string text{};  ///< In sentences.
 
   /// Adds a sentence, and makes the outcome at least this one.
-  void find(finding how, std::string_view sentence);
+  void find(finding finding, std::string_view sentence);
   /// Adds a fact: a number, a text, or yes or no.
   void add(std::string name, auto value) {
     facts.push_back(make_evidence(std::move(name), std::move(value)));
@@ -105,15 +105,15 @@ struct report {
   std::optional<error> failure{};  ///< What ended the connection before the last step.
 };
 
-/// Does all steps with the lidar behind `from`. Sends every query and command that changes a setting; what a model
+/// Does all steps with the lidar behind `connector`. Sends every query and command that changes a setting; what a model
 /// does not have is skipped. Whatever ends the run, also an exception of a function of `options`: the settings
 /// are set back to what they were, and the motor is stopped. When the connection breaks for another reason than the
 /// unplug, the remaining steps are not done.
-[[nodiscard]] report run(connector& from, const run_options& options);
+[[nodiscard]] report run(connector& connector, const run_options& options);
 
 /// "start_and_stop". The names do not change.
-[[nodiscard]] std::string_view name_of(step of) noexcept;
+[[nodiscard]] std::string_view name_of(step step) noexcept;
 /// "agrees", "observed", "not_done", "differs".
-[[nodiscard]] std::string_view name_of(finding how) noexcept;
+[[nodiscard]] std::string_view name_of(finding finding) noexcept;
 
 }  // namespace g4_tool::acceptance

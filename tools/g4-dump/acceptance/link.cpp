@@ -76,8 +76,8 @@ std::string raw_reply::text() const {
   return fmt::format("{:02x}", fmt::join(bytes(data).first(std::min(data.size(), most)), ""));
 }
 
-void lidar_link::read_as(const model& which) {
-  which_ = which;
+void lidar_link::read_as(const model& model) {
+  which_ = model;
   parser_ = stream_parser(which_.samples);
   counts_ = {};
   layout_ = {};

@@ -64,17 +64,17 @@ struct steady_motor {
 class lidar_link {
  public:
   lidar_link(std::unique_ptr<transport> opened, std::function<bool()> is_cancelled,
-             const model& which)
+             const model& model)
       : port_(std::move(opened)), is_cancelled_(std::move(is_cancelled)) {
-    read_as(which);
+    read_as(model);
   }
 
   using observer = std::function<void(const event&, std::int64_t arrival_ns)>;
   /// Observes until `until_ns`, which the observer may change.
   void listen(const std::int64_t& until_ns, const observer& to = {});
   void listen_for(std::int64_t time_ns) { listen(now_ns() + time_ns); }
-  /// Packets are those of a lidar like `which` from now on, which is copied.
-  void read_as(const model& which);
+  /// Packets are those of a lidar like `model` from now on, which is copied.
+  void read_as(const model& model);
 
   void send(command code);
   /// Sends a command, and waits for its reply.

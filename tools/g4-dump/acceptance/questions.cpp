@@ -5,21 +5,21 @@
 #include <algorithm>
 #include <array>
 
-#include "rows.hpp"
+#include "kit_rows.hpp"
 
 namespace g4_tool::acceptance {
 namespace {
 
 bool any(const model& /*which*/) noexcept { return true; }
-bool two_way(const model& which) noexcept { return which.link == link_kind::two_way; }
-bool one_way(const model& which) noexcept { return !two_way(which); }
-bool sets_frequency(const model& which) noexcept { return which.frequency.max_dhz != 0; }
-bool sets_rate(const model& which) noexcept { return which.rates.is_settable; }
-bool has_dtr(const model& which) noexcept { return which.motor == motor_kind::dtr; }
-bool has_offset(const model& which) noexcept { return which.zero_angle_divisor != 0; }
-bool has_flags(const model& which) noexcept { return has_sample_flags(which.samples.layout); }
-bool may_have_protection(const model& which) noexcept {
-  return two_way(which) && which.protection != presence::no;
+bool two_way(const model& model) noexcept { return model.link == link_kind::two_way; }
+bool one_way(const model& model) noexcept { return !two_way(model); }
+bool sets_frequency(const model& model) noexcept { return model.frequency.max_dhz != 0; }
+bool sets_rate(const model& model) noexcept { return model.rates.is_settable; }
+bool has_dtr(const model& model) noexcept { return model.motor == motor_kind::dtr; }
+bool has_offset(const model& model) noexcept { return model.zero_angle_divisor != 0; }
+bool has_flags(const model& model) noexcept { return has_sample_flags(model.samples.layout); }
+bool may_have_protection(const model& model) noexcept {
+  return two_way(model) && model.protection != presence::no;
 }
 
 constexpr std::array questions{
@@ -113,7 +113,7 @@ const evidence* fact_of(std::span<const step_result> results, std::string_view n
 
 std::span<const question_row> question_rows() noexcept { return questions; }
 
-std::vector<question_answer> answers_of(const model& which, std::span<const step_result> results) {
+std::vector<question_answer> answers_of(const model& model, std::span<const step_result> results) {
   using enum question_answer::state;
   std::vector<question_answer> all;
   for (const question_row& row : questions) {
@@ -127,7 +127,7 @@ std::vector<question_answer> answers_of(const model& which, std::span<const step
     const auto done = std::ranges::find(results, row.asked_by, &step_result::of);
     if (!facts.empty()) {
       all.push_back({answered, facts});
-    } else if (!row.arises(which)) {
+    } else if (!row.arises(model)) {
       all.push_back({does_not_arise, "Not with this model."});
     } else {
       all.push_back({open, done == results.end() ? "The step was not done." : done->text});

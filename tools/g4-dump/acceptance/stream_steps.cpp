@@ -11,7 +11,7 @@
 #include <string_view>
 #include <utility>
 
-#include "rows.hpp"
+#include "kit_rows.hpp"
 
 namespace g4_tool::acceptance {
 namespace {
@@ -58,108 +58,109 @@ bit_use stated_use(sample_layout layout) noexcept {
 
 }  // namespace
 
-void stream(subject& of, step_result& into) {
-  lidar_link& link = *of.link;
+void stream(tested_lidar& lidar, step_result& result) {
+  lidar_link& link = *lidar.link;
   if (link.start() < 0) {
-    into.add("packets", 0);
-    into.add("sample_bytes", link.sample_bytes());
+    result.add("packets", 0);
+    result.add("sample_bytes", link.sample_bytes());
     link.stop();
     return;
   }
   static_cast<void>(link.survey(spun_up_ns));
   const std::uint64_t skipped_before = link.counts().skipped_bytes();
-  of.surveyed = std::make_unique<packet_survey>(
-      steady_survey(link, std::chrono::nanoseconds(of.options.stream_time).count()));
-  const packet_survey& heard = *of.surveyed;
+  lidar.surveyed = std::make_unique<packet_survey>(
+      steady_survey(link, std::chrono::nanoseconds(lidar.options.stream_time).count()));
+  const packet_survey& heard = *lidar.surveyed;
   link.stop();
   const std::uint64_t packets = heard.counts.packets;
-  into.add("packets", packets);
-  into.add("skipped_bytes", link.counts().skipped_bytes() - skipped_before);
-  if (link.sample_bytes() != 0) into.add("sample_bytes", link.sample_bytes());
+  result.add("packets", packets);
+  result.add("skipped_bytes", link.counts().skipped_bytes() - skipped_before);
+  if (link.sample_bytes() != 0) result.add("sample_bytes", link.sample_bytes());
   if (packets == 0) return;
   const bool has_rates =
-      heard.is_steady() || of.options.stream_time > std::chrono::nanoseconds(short_survey_ns);
-  into.add("revolutions", heard.zero_packets);
-  into.add("most_samples", heard.most_samples);
+      heard.is_steady() || lidar.options.stream_time > std::chrono::nanoseconds(short_survey_ns);
+  result.add("revolutions", heard.zero_packets);
+  result.add("most_samples", heard.most_samples);
   if (has_rates) {
-    into.add("damaged_percent", 100.0 * static_cast<double>(heard.bad_checksums) /
-                                    static_cast<double>(packets + heard.bad_checksums));
-    into.add("sample_rate_hz", heard.sample_rate_hz());
-    into.add("frequency_hz", heard.frequency_hz());
+    result.add("damaged_percent", 100.0 * static_cast<double>(heard.bad_checksums) /
+                                      static_cast<double>(packets + heard.bad_checksums));
+    result.add("sample_rate_hz", heard.sample_rate_hz());
+    result.add("frequency_hz", heard.frequency_hz());
   } else {
-    into.find(observed, not_steady);
+    result.find(observed, not_steady);
   }
   const auto add_range = [&](std::string name, std::optional<std::size_t> at) {
     const auto range_mm = at ? heard.directions.range_mm(*at) : std::nullopt;
-    if (range_mm) into.add(std::move(name), *range_mm);
+    if (range_mm) result.add(std::move(name), *range_mm);
   };
   add_range("shortest_mm", heard.directions.nearest());
   add_range("longest_mm", heard.directions.farthest());
   const bool reports = heard.reported_hz() > 0.0;
-  if (heard.zero_packets > 2) into.add("reports_frequency", reports);
-  if (reports && has_rates) into.add("offset_hz", heard.frequency_hz() - heard.reported_hz());
-  if (!reports) into.find(observed, "Zero packets do not report the frequency.");
+  if (heard.zero_packets > 2) result.add("reports_frequency", reports);
+  if (reports && has_rates) result.add("offset_hz", heard.frequency_hz() - heard.reported_hz());
+  if (!reports) result.find(observed, "Zero packets do not report the frequency.");
 }
 
-void sample_bits(subject& of, step_result& into) {
-  const packet_survey& heard = *of.surveyed;
-  const sample_layout layout = of.row.samples.layout;
+void sample_bits(tested_lidar& lidar, step_result& result) {
+  const packet_survey& heard = *lidar.surveyed;
+  const sample_layout layout = lidar.row.samples.layout;
   constexpr std::array<std::string_view, packet_survey::zones> names{"no_return", "below_1_m",
                                                                      "below_2_m", "beyond"};
   for (std::size_t at = 0; at < names.size(); ++at)
-    into.add(fmt::format("{}_bits", names.at(at)),
-             fmt::format("{}", fmt::join(heard.bits.at(at), " ")));
+    result.add(fmt::format("{}_bits", names.at(at)),
+               fmt::format("{}", fmt::join(heard.bits.at(at), " ")));
   const bool has_byte = sample_size(layout) == 3;
   if (has_byte) {
-    into.add("smooth_changes", heard.smooth_changes);
-    into.add("overflows", heard.overflows);
+    result.add("smooth_changes", heard.smooth_changes);
+    result.add("overflows", heard.overflows);
   }
   const bit_use found = has_byte ? use_by_changes(heard) : use_by_values(heard);
   const bit_use stated = stated_use(layout);
   const std::string word(bit_words.at(static_cast<std::size_t>(found)));
-  if (found != bit_use::unclear) into.add("lower_bits", word);
+  if (found != bit_use::unclear) result.add("lower_bits", word);
   const bool may_be = found == bit_use::unused && stated == bit_use::flags;  // no flag was set
   if (found == bit_use::unclear || stated == bit_use::unclear || may_be || found == stated) {
     const bool is_right = found == stated && found != bit_use::unclear;
-    return into.find(is_right ? agrees : observed, fmt::format("The two lower bits are {}.", word));
+    return result.find(is_right ? agrees : observed,
+                       fmt::format("The two lower bits are {}.", word));
   }
-  into.find(differs, fmt::format("lower_bits is {}, expected {}.", word,
-                                 bit_words.at(static_cast<std::size_t>(stated))));
+  result.find(differs, fmt::format("lower_bits is {}, expected {}.", word,
+                                   bit_words.at(static_cast<std::size_t>(stated))));
 }
 
-void ct_information(subject& of, step_result& into) {
+void ct_information(tested_lidar& lidar, step_result& result) {
   constexpr std::uint64_t packets_with_information = 14;
   constexpr std::uint64_t enough = 3;
-  const packet_survey& heard = *of.surveyed;
+  const packet_survey& heard = *lidar.surveyed;
   const auto& who = heard.information();
   const bool has_byte = heard.crc_fits + heard.crc_misfits >= enough;
   const bool has_crc = heard.crc_fits >= enough && heard.crc_fits > heard.crc_misfits;
   const bool is_long = heard.zero_packets > enough;
-  into.add("crc_fits", heard.crc_fits);
-  into.add("crc_does_not_fit", heard.crc_misfits);
-  if (is_long) into.add("crc_byte", has_crc);
-  into.find(observed, has_crc    ? "A CRC byte follows."
-                      : has_byte ? "A byte follows that is not the CRC."
-                                 : "No byte follows.");
+  result.add("crc_fits", heard.crc_fits);
+  result.add("crc_does_not_fit", heard.crc_misfits);
+  if (is_long) result.add("crc_byte", has_crc);
+  result.find(observed, has_crc    ? "A CRC byte follows."
+                        : has_byte ? "A byte follows that is not the CRC."
+                                   : "No byte follows.");
   if (who) {
-    into.add("number", who->id_low_bits);
-    into.add("firmware", fmt::format("{}.{}", who->firmware_major, who->firmware_minor));
-    into.add("hardware", who->hardware);
-    into.add("faults", static_cast<std::uint8_t>(who->faults));
+    result.add("number", who->id_low_bits);
+    result.add("firmware", fmt::format("{}.{}", who->firmware_major, who->firmware_minor));
+    result.add("hardware", who->hardware);
+    result.add("faults", static_cast<std::uint8_t>(who->faults));
   }
   if (!who && has_crc && heard.counts.packets < packets_with_information * heard.zero_packets)
-    return into.find(observed, "A revolution has too few packets for the information.");
-  if (is_long) into.add("information", who.has_value());
+    return result.find(observed, "A revolution has too few packets for the information.");
+  if (is_long) result.add("information", who.has_value());
 }
 
-void time_packets(subject& of, step_result& into) {
+void time_packets(tested_lidar& lidar, step_result& result) {
   constexpr auto long_enough = std::chrono::seconds(10);
-  const std::uint64_t count = of.surveyed->counts.time_packets;
-  const bool is_decided = count > 0 || of.options.stream_time >= long_enough;
-  if (is_decided) into.add("time_packets", count);
-  into.find(observed, count > 0    ? "It sends time packets."
-                      : is_decided ? "It sends no time packets."
-                                   : "There were none in less than 10 s.");
+  const std::uint64_t count = lidar.surveyed->counts.time_packets;
+  const bool is_decided = count > 0 || lidar.options.stream_time >= long_enough;
+  if (is_decided) result.add("time_packets", count);
+  result.find(observed, count > 0    ? "It sends time packets."
+                        : is_decided ? "It sends no time packets."
+                                     : "There were none in less than 10 s.");
 }
 
 }  // namespace g4_tool::acceptance

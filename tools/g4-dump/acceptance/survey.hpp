@@ -20,7 +20,7 @@ using namespace g4lidar;
 /// Ranges by direction: one degree each, clockwise in the frame of the device. *Single thread.*
 class direction_survey {
  public:
-  explicit direction_survey(const model& which) : decoder_(which) {}
+  explicit direction_survey(const model& model) : decoder_(model) {}
 
   void take(packet_view packet);
   /// The median of the ranges in this direction, of at least five; nothing if there are fewer.
@@ -41,7 +41,7 @@ class packet_survey {
   enum zone : std::uint8_t { no_return, below_1_m, below_2_m, beyond };
   static constexpr std::size_t zones = 4;
 
-  explicit packet_survey(const model& which) : directions(which), layout_(which.samples.layout) {}
+  explicit packet_survey(const model& model) : directions(model), layout_(model.samples.layout) {}
 
   void take(const event& found, std::int64_t arrival_ns);
 

@@ -23,10 +23,10 @@ struct cloud_point {
 
 /// Writes the bytes of a number, the lowest first.
 template <class Number>
-char* put_little_endian(char* at, Number number) noexcept {
+char* put_little_endian(char* out, Number number) noexcept {
   auto raw = std::bit_cast<std::array<char, sizeof number>>(number);
   if constexpr (std::endian::native == std::endian::big) std::reverse(raw.begin(), raw.end());
-  return std::copy(raw.begin(), raw.end(), at);
+  return std::copy(raw.begin(), raw.end(), out);
 }
 
 [[nodiscard]] inline cloud_point in_cloud(const point& p, frame to,

@@ -46,24 +46,24 @@ class csv_points final : public point_writer {
   static constexpr std::size_t max_row = 76;
   static constexpr std::size_t most_rows = 512;
 
-  char* put_row(char* at, const point& p) noexcept {
+  char* put_row(char* out, const point& p) noexcept {
     if (p.revolution != scan_) keep_scan(p.revolution);
-    std::memcpy(at, scan_text_.data(), scan_text_.size());
-    at = put_angle_column<Frame>(at + scan_length_, p, turn_deg_);
-    *at++ = ',';
-    at = put_range_column<Unit>(at, p);
-    *at++ = ',';
-    at = digits::put_number(at, p.time_ns);
+    std::memcpy(out, scan_text_.data(), scan_text_.size());
+    out = put_angle_column<Frame>(out + scan_length_, p, turn_deg_);
+    *out++ = ',';
+    out = put_range_column<Unit>(out, p);
+    *out++ = ',';
+    out = digits::put_number(out, p.time_ns);
     if (has_intensity_) {
-      *at++ = ',';
-      at = digits::put_number(at, p.intensity);
+      *out++ = ',';
+      out = digits::put_number(out, p.intensity);
     }
     if (has_sample_flags_) {
-      *at++ = ',';
-      at = digits::put_number(at, p.sample_flags);
+      *out++ = ',';
+      out = digits::put_number(out, p.sample_flags);
     }
-    *at++ = '\n';
-    return at;
+    *out++ = '\n';
+    return out;
   }
 
   void keep_scan(std::uint32_t scan) noexcept {

@@ -16,15 +16,15 @@
 namespace g4_tool::digits {
 
 /// Writes `text`.
-inline char* put_text(char* at, std::string_view text) noexcept {
-  return std::copy(text.begin(), text.end(), at);
+inline char* put_text(char* out, std::string_view text) noexcept {
+  return std::copy(text.begin(), text.end(), out);
 }
 
 /// Writes any number: at most 20 characters.
 template <std::integral Number>
-char* put_number(char* at, Number number) noexcept {
+char* put_number(char* out, Number number) noexcept {
   constexpr int most = std::numeric_limits<Number>::digits10 + 1 + std::is_signed_v<Number>;
-  return std::to_chars(at, at + most, number).ptr;
+  return std::to_chars(out, out + most, number).ptr;
 }
 
 /// 10^`exponent`.
@@ -40,23 +40,23 @@ char* put_number(char* at, Number number) noexcept {
 
 /// Writes `scaled` / 10^Decimals with all its decimals: at most 21 characters.
 template <unsigned Decimals, std::unsigned_integral Number>
-char* put_scaled(char* at, Number scaled) noexcept {
+char* put_scaled(char* out, Number scaled) noexcept {
   static_assert(Decimals >= 1 && Decimals <= 6);
   constexpr std::uint32_t one = power_of_ten(Decimals);
   const bool is_below_one = scaled < one;  // then one more keeps the zeros of the decimals
-  char* const end = put_number(at, is_below_one ? scaled + one : scaled);
+  char* const end = put_number(out, is_below_one ? scaled + one : scaled);
   char* const point = end - Decimals;
   std::memmove(point + 1, point, Decimals);
   *point = '.';
-  if (is_below_one) *at = '0';
+  if (is_below_one) *out = '0';
   return end + 1;
 }
 
 /// Writes x, 0 <= x * 10^Decimals < 2^51, rounded to this number of decimals. Faster than the form of std::to_chars for
 /// fixed decimals, which also rounds the exact number, and not the product as here.
 template <unsigned Decimals>
-char* put_fixed(char* at, double x) noexcept {
-  return put_scaled<Decimals>(at, nearest(x * power_of_ten(Decimals)));
+char* put_fixed(char* out, double x) noexcept {
+  return put_scaled<Decimals>(out, nearest(x * power_of_ten(Decimals)));
 }
 
 /// An angle, 0 <= degrees < 360, in units of the last one of this number of decimals, below 360 degrees, too.
@@ -69,19 +69,19 @@ template <unsigned Decimals>
 /// Writes an angle, 0 <= degrees < 360, rounded to this number of decimals. An angle that rounds to
 /// 360 becomes 0: the text is also below 360.
 template <unsigned Decimals>
-char* put_angle(char* at, double degrees) noexcept {
-  return put_scaled<Decimals>(at, scaled_angle<Decimals>(degrees));
+char* put_angle(char* out, double degrees) noexcept {
+  return put_scaled<Decimals>(out, scaled_angle<Decimals>(degrees));
 }
 
 /// Writes the angle in [0, 360) degrees as one in [-180, 180), rounded to this number of decimals.
 /// An angle that rounds to 180 becomes -180.
 template <unsigned Decimals>
-char* put_signed_angle(char* at, double degrees) noexcept {
+char* put_signed_angle(char* out, double degrees) noexcept {
   constexpr std::uint32_t turn = 360 * power_of_ten(Decimals);
   const std::uint32_t scaled = scaled_angle<Decimals>(degrees);
-  if (scaled < turn / 2) return put_scaled<Decimals>(at, scaled);
-  *at++ = '-';
-  return put_scaled<Decimals>(at, turn - scaled);
+  if (scaled < turn / 2) return put_scaled<Decimals>(out, scaled);
+  *out++ = '-';
+  return put_scaled<Decimals>(out, turn - scaled);
 }
 
 }  // namespace g4_tool::digits

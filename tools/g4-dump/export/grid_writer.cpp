@@ -12,8 +12,8 @@ namespace {
 
 class grid_writer final : public point_writer {
  public:
-  grid_writer(const text_style& style, std::size_t bins, const grid_options& how)
-      : style_(style), how_(how), ranges_m_(bins) {
+  grid_writer(const text_style& style, std::size_t bins, const grid_options& options)
+      : style_(style), how_(options), ranges_m_(bins) {
     how_.to = style.to;
   }
 
@@ -81,9 +81,9 @@ class grid_writer final : public point_writer {
     }
   }
 
-  char* put_range(char* at, double range_m) const noexcept {
-    if (style_.unit == length_unit::metres) return digits::put_fixed<5>(at, range_m);
-    return digits::put_fixed<2>(at, range_m * 1000.0);
+  char* put_range(char* out, double range_m) const noexcept {
+    if (style_.unit == length_unit::metres) return digits::put_fixed<5>(out, range_m);
+    return digits::put_fixed<2>(out, range_m * 1000.0);
   }
 
   text_style style_;
@@ -94,8 +94,8 @@ class grid_writer final : public point_writer {
 }  // namespace
 
 std::unique_ptr<point_writer> make_grid_writer(const text_style& style, std::size_t bins,
-                                               const grid_options& how) {
-  return std::make_unique<grid_writer>(style, bins, how);
+                                               const grid_options& options) {
+  return std::make_unique<grid_writer>(style, bins, options);
 }
 
 }  // namespace g4_tool

@@ -10,7 +10,9 @@ namespace {
 
 using digits::put_text;
 
-char* put_bool(char* at, bool yes) noexcept { return put_text(at, yes ? "true" : "false"); }
+char* put_bool(char* position, bool yes) noexcept {
+  return put_text(position, yes ? "true" : "false");
+}
 
 /// An object per point.
 class jsonl_points final : public point_writer {
@@ -38,23 +40,24 @@ class jsonl_points final : public point_writer {
  private:
   static constexpr std::size_t max_object = 384;
 
-  char* put_point(char* at, const point& p, std::uint16_t turn_deg) const noexcept {
-    at = digits::put_number(put_text(at, "{\"scan\":"), p.revolution);
-    at = put_angle_column(put_text(at, ",\"angle_deg\":"), p, style_.to, turn_deg);
-    at = put_range_column(put_text(at, range_name_), p, style_.unit);
-    at = digits::put_number(put_text(at, ",\"time_ns\":"), p.time_ns);
-    if (style_.intensity) at = digits::put_number(put_text(at, ",\"intensity\":"), p.intensity);
+  char* put_point(char* position, const point& p, std::uint16_t turn_deg) const noexcept {
+    position = digits::put_number(put_text(position, "{\"scan\":"), p.revolution);
+    position = put_angle_column(put_text(position, ",\"angle_deg\":"), p, style_.to, turn_deg);
+    position = put_range_column(put_text(position, range_name_), p, style_.unit);
+    position = digits::put_number(put_text(position, ",\"time_ns\":"), p.time_ns);
+    if (style_.intensity)
+      position = digits::put_number(put_text(position, ",\"intensity\":"), p.intensity);
     if (style_.sample_flags) {
-      at = digits::put_number(put_text(at, ",\"sample_flags\":"), p.sample_flags);
+      position = digits::put_number(put_text(position, ",\"sample_flags\":"), p.sample_flags);
     }
-    at = put_bool(put_text(at, ",\"no_return\":"), p.is_no_return());
-    at = put_bool(put_text(at, ",\"too_near\":"), p.is_too_near());
-    for (const doubt& each : doubts) {
+    position = put_bool(put_text(position, ",\"no_return\":"), p.is_no_return());
+    position = put_bool(put_text(position, ",\"too_near\":"), p.is_too_near());
+    for (const doubt_name& each : doubts) {
       if (each.flag == point_flags::too_near || (p.flags & each.flag) == point_flags::none)
         continue;
-      at = put_text(put_text(put_text(at, ",\""), each.name), "\":true");
+      position = put_text(put_text(put_text(position, ",\""), each.name), "\":true");
     }
-    return at;
+    return position;
   }
 
   text_style style_;
@@ -79,20 +82,25 @@ class jsonl_scans final : public point_writer {
               ",\"turned_deg\":" + with_decimals(static_cast<double>(scan.turned_deg), 2) +
               ",\"reported_hz\":" + if_known(reported_hz(scan), 1, "null") +
               ",\"measured_hz\":" + if_known(record.measured_hz, 3, "null"));
-    write_column(scan, "angle_deg", out, [&](char* at, const point& p) {
-      return put_angle_column(at, p, style_.to, scan.model->turn_deg);
+    write_column(scan, "angle_deg", out, [&](char* position, const point& p) {
+      return put_angle_column(position, p, style_.to, scan.model->turn_deg);
     });
     write_column(scan, style_.unit == length_unit::metres ? "range_m" : "range_mm", out,
-                 [this](char* at, const point& p) { return put_range_column(at, p, style_.unit); });
-    write_column(scan, "time_ns", out,
-                 [](char* at, const point& p) { return digits::put_number(at, p.time_ns); });
+                 [this](char* position, const point& p) {
+                   return put_range_column(position, p, style_.unit);
+                 });
+    write_column(scan, "time_ns", out, [](char* position, const point& p) {
+      return digits::put_number(position, p.time_ns);
+    });
     if (style_.intensity) {
-      write_column(scan, "intensity", out,
-                   [](char* at, const point& p) { return digits::put_number(at, p.intensity); });
+      write_column(scan, "intensity", out, [](char* position, const point& p) {
+        return digits::put_number(position, p.intensity);
+      });
     }
     if (style_.sample_flags) {
-      write_column(scan, "sample_flags", out,
-                   [](char* at, const point& p) { return digits::put_number(at, p.sample_flags); });
+      write_column(scan, "sample_flags", out, [](char* position, const point& p) {
+        return digits::put_number(position, p.sample_flags);
+      });
     }
     out.write("}\n");
   }

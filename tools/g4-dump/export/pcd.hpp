@@ -29,9 +29,9 @@ enum class pcd_data : std::uint8_t {
 /// | `time_ns` | 64-bit signed integer | point::time_ns |
 /// | `intensity` | float | point::intensity, of models that have it |
 ///
-/// The points are those of a lidar like `which`, which also has the turn of its frame.
+/// The points are those of a lidar like `model`, which also has the turn of its frame.
 void write_pcd(std::span<const point> points, frame to, pcd_data data, text_sink& out,
-               const model& which = g4_model);
+               const model& model = g4_model);
 /// The same for the points of a scan.
 inline void write_pcd(const scan& source, frame to, pcd_data data, text_sink& out) {
   write_pcd(source.points, to, data, out, *source.model);

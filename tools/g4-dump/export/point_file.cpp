@@ -46,14 +46,14 @@ std::string npy_header(std::uint64_t count) {
   return padded(begin + fields, size - 1) + '\n';
 }
 
-char* put_npy_point(char* at, const point& p) noexcept {
-  at = put_little_endian(at, p.angle_deg);
-  at = put_little_endian(at, p.range_mm);
-  at = put_little_endian(at, p.time_ns);
-  at = put_little_endian(at, p.revolution);
-  at = put_little_endian(at, p.flags);
-  at = put_little_endian(at, p.sample_flags);
-  return put_little_endian(at, p.intensity);
+char* put_npy_point(char* out, const point& p) noexcept {
+  out = put_little_endian(out, p.angle_deg);
+  out = put_little_endian(out, p.range_mm);
+  out = put_little_endian(out, p.time_ns);
+  out = put_little_endian(out, p.revolution);
+  out = put_little_endian(out, p.flags);
+  out = put_little_endian(out, p.sample_flags);
+  return put_little_endian(out, p.intensity);
 }
 
 class npy_writer : public point_file_writer {
@@ -156,8 +156,8 @@ class npz_writer final : public npy_writer {
 
 class ply_writer final : public point_file_writer {
  public:
-  ply_writer(frame to, const model& which)
-      : to_(to), turn_deg_(which.turn_deg), has_intensity_(has_intensity(which)) {}
+  ply_writer(frame to, const model& model)
+      : to_(to), turn_deg_(model.turn_deg), has_intensity_(has_intensity(model)) {}
 
   void begin(text_sink& out) override { out.write(first_bytes()); }
 
@@ -218,18 +218,18 @@ class xyz_writer final : public point_file_writer {
 }  // namespace
 
 std::unique_ptr<point_file_writer> make_point_file_writer(point_file_format format, frame to,
-                                                          const model& which) {
+                                                          const model& model) {
   switch (format) {
     case point_file_format::npy:
       return std::make_unique<npy_writer>();
     case point_file_format::npz:
       return std::make_unique<npz_writer>();
     case point_file_format::ply:
-      return std::make_unique<ply_writer>(to, which);
+      return std::make_unique<ply_writer>(to, model);
     case point_file_format::xyz:
       break;
   }
-  return std::make_unique<xyz_writer>(to, which.turn_deg);
+  return std::make_unique<xyz_writer>(to, model.turn_deg);
 }
 
 }  // namespace g4_tool

@@ -34,9 +34,9 @@ class point_file_writer : public point_writer {
   [[nodiscard]] virtual std::string first_bytes() const = 0;
 };
 
-/// The writer for `format`, of points of a lidar like `which`. `to` is the frame of ply and xyz; ply has
+/// The writer for `format`, of points of a lidar like `model`. `to` is the frame of ply and xyz; ply has
 /// the intensity of models that have it.
 [[nodiscard]] std::unique_ptr<point_file_writer> make_point_file_writer(
-    point_file_format format, frame to, const model& which = g4_model);
+    point_file_format format, frame to, const model& model = g4_model);
 
 }  // namespace g4_tool

@@ -99,11 +99,11 @@ class point_writer {
 /// The writer of revolutions as `bins` ranges at equal steps of 360 / `bins` degrees, the first one
 /// at 0 degrees, in the robot's frame at -180. Columns of csv: `scan`, `time_ns`, `partial`, and
 /// `range_mm_0` or `range_m_0` and so on: `inf` if nothing came back, `nan` if nothing is known, `-inf`
-/// if a target may be too near, as `how` sets (grid.hpp; its frame is that of `style`). jsonl:
+/// if a target may be too near, as `options` sets (grid.hpp; its frame is that of `style`). jsonl:
 /// `angle_min_deg`, `angle_step_deg`, and `ranges_mm` or `ranges_m`, with "inf", null and "-inf" for
 /// these. *Allocates on construction.*
 [[nodiscard]] std::unique_ptr<point_writer> make_grid_writer(const text_style& style,
                                                              std::size_t bins,
-                                                             const grid_options& how = {});
+                                                             const grid_options& options = {});
 
 }  // namespace g4_tool

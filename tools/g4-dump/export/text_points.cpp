@@ -149,9 +149,9 @@ std::optional<read_point> point_lines::read(std::string_view line) {
 }
 
 text_points::text_points(text_source form, frame in, point_writer& writer, text_sink& out,
-                         const model& which)
-    : lines_(form, in, which), writer_(writer), out_(out), by_scan_(writer.takes_scans()) {
-  gathered_.reserve(by_scan_ ? 2 * largest_scan(which) : 512);
+                         const model& model)
+    : lines_(form, in, model), writer_(writer), out_(out), by_scan_(writer.takes_scans()) {
+  gathered_.reserve(by_scan_ ? 2 * largest_scan(model) : 512);
   is_header_due_ = form == text_source::csv;
 }
 

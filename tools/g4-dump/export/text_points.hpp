@@ -30,10 +30,10 @@ struct read_point {
 /// among any others. *Single thread.*
 class point_lines {
  public:
-  /// `in`: the frame of the angles in the text. `which`: the model of the lidar, for the turn of that
+  /// `in`: the frame of the angles in the text. `model`: the model of the lidar, for the turn of that
   /// frame and the shortest range; it outlives this.
-  point_lines(text_source form, frame in, const g4lidar::model& which = g4_model) noexcept
-      : form_(form), frame_(in), model_(&which) {}
+  point_lines(text_source form, frame in, const g4lidar::model& model = g4_model) noexcept
+      : form_(form), frame_(in), model_(&model) {}
 
   /// The point of a line without its line end; nothing if it contains none, like the header line of
   /// csv.
@@ -97,9 +97,9 @@ class point_lines {
 /// *Single thread, allocates on construction.*
 class text_points {
  public:
-  /// `writer`, `out` and `which`, the model of the lidar, must outlive this.
+  /// `writer`, `out` and `model`, the model of the lidar, must outlive this.
   text_points(text_source form, frame in, point_writer& writer, text_sink& out,
-              const model& which = g4_model);
+              const model& model = g4_model);
 
   /// Adds the next text, in pieces of any size.
   void take(std::string_view text);

@@ -37,12 +37,12 @@ class point_columns final : public point_writer {
     return std::min<unsigned>(style_.time_width, max_line / 2) + 7;
   }
 
-  char* put_line(char* at, const point& p) const noexcept {
-    const auto right = [&at](unsigned width, auto put) {
+  char* put_line(char* out, const point& p) const noexcept {
+    const auto right = [&out](unsigned width, auto put) {
       std::array<char, 48> text;
       const auto size = static_cast<std::size_t>(put(text.data()) - text.data());
-      for (std::size_t i = size; i < width; ++i) *at++ = ' ';
-      at = digits::put_text(at, {text.data(), size});
+      for (std::size_t i = size; i < width; ++i) *out++ = ' ';
+      out = digits::put_text(out, {text.data(), size});
     };
     right(6, [&](char* to) { return digits::put_number(to, p.revolution); });
     right(2, [](char* to) { return to; });
@@ -54,13 +54,13 @@ class point_columns final : public point_writer {
     right(2, [](char* to) { return to; });
     right(time_width(), [&](char* to) { return put_seconds(to, p.time_ns); });
     std::string_view before = "  ";
-    for (const doubt& each : doubts) {
+    for (const doubt_name& each : doubts) {
       if ((p.flags & each.flag) == point_flags::none) continue;
-      char* const words = digits::put_text(at, std::exchange(before, ", "));
-      at = digits::put_text(words, each.name);
-      std::replace(words, at, '_', ' ');
+      char* const words = digits::put_text(out, std::exchange(before, ", "));
+      out = digits::put_text(words, each.name);
+      std::replace(words, out, '_', ' ');
     }
-    return digits::put_text(at, "\n");
+    return digits::put_text(out, "\n");
   }
 
   text_style style_;

@@ -21,12 +21,12 @@ std::string in_words(Number number) {
 
 }  // namespace
 
-char* put_seconds(char* at, std::int64_t time_ns) noexcept {
+char* put_seconds(char* out, std::int64_t time_ns) noexcept {
   const bool is_negative = time_ns < 0;
   const auto number = static_cast<std::uint64_t>(time_ns);
   const std::uint64_t magnitude = is_negative ? std::uint64_t{0} - number : number;
-  if (is_negative) *at++ = '-';
-  return digits::put_scaled<6>(at, magnitude / 1'000U);
+  if (is_negative) *out++ = '-';
+  return digits::put_scaled<6>(out, magnitude / 1'000U);
 }
 
 std::string with_decimals(double number, int decimals) {

@@ -19,29 +19,29 @@ namespace g4_tool {
 
 /// The angle in `Frame` with this number of decimals, at most 11 characters.
 template <frame Frame, unsigned Decimals = 6>
-char* put_angle_column(char* at, const point& p, std::uint16_t turn_deg) noexcept {
+char* put_angle_column(char* out, const point& p, std::uint16_t turn_deg) noexcept {
   if constexpr (Frame == frame::robot) {
     const float degrees = bearing_deg(p.angle_deg, Frame, turn_deg);
-    return digits::put_signed_angle<Decimals>(at, static_cast<double>(degrees));
+    return digits::put_signed_angle<Decimals>(out, static_cast<double>(degrees));
   }
-  return digits::put_angle<Decimals>(at, static_cast<double>(p.angle_deg));
+  return digits::put_angle<Decimals>(out, static_cast<double>(p.angle_deg));
 }
 template <unsigned Decimals = 6>
-char* put_angle_column(char* at, const point& p, frame to, std::uint16_t turn_deg) noexcept {
-  return to == frame::robot ? put_angle_column<frame::robot, Decimals>(at, p, turn_deg)
-                            : put_angle_column<frame::vendor, Decimals>(at, p, turn_deg);
+char* put_angle_column(char* out, const point& p, frame to, std::uint16_t turn_deg) noexcept {
+  return to == frame::robot ? put_angle_column<frame::robot, Decimals>(out, p, turn_deg)
+                            : put_angle_column<frame::vendor, Decimals>(out, p, turn_deg);
 }
 
 /// The range: millimetres with two decimals, metres with five, so that no digit is lost.
 template <length_unit Unit>
-char* put_range_column(char* at, const point& p) noexcept {
+char* put_range_column(char* out, const point& p) noexcept {
   const auto range_mm = static_cast<double>(p.range_mm);
-  if constexpr (Unit == length_unit::millimetres) return digits::put_fixed<2>(at, range_mm);
-  return digits::put_scaled<5>(at, digits::nearest(range_mm * 100.0));
+  if constexpr (Unit == length_unit::millimetres) return digits::put_fixed<2>(out, range_mm);
+  return digits::put_scaled<5>(out, digits::nearest(range_mm * 100.0));
 }
-inline char* put_range_column(char* at, const point& p, length_unit unit) noexcept {
-  return unit == length_unit::metres ? put_range_column<length_unit::metres>(at, p)
-                                     : put_range_column<length_unit::millimetres>(at, p);
+inline char* put_range_column(char* out, const point& p, length_unit unit) noexcept {
+  return unit == length_unit::metres ? put_range_column<length_unit::metres>(out, p)
+                                     : put_range_column<length_unit::millimetres>(out, p);
 }
 
 [[nodiscard]] inline const char* name_of(length_unit unit) noexcept {
@@ -49,7 +49,7 @@ inline char* put_range_column(char* at, const point& p, length_unit unit) noexce
 }
 
 /// Seconds with six decimals, truncated; at most 20 characters.
-char* put_seconds(char* at, std::int64_t time_ns) noexcept;
+char* put_seconds(char* out, std::int64_t time_ns) noexcept;
 
 /// Any finite number, rounded as printf does.
 [[nodiscard]] std::string with_decimals(double number, int decimals);
@@ -67,11 +67,11 @@ char* put_seconds(char* at, std::int64_t time_ns) noexcept;
   return scan.reported_frequency_dhz / 10.0;
 }
 /// A flag that makes a point doubtful, and its name in jsonl.
-struct doubt {
+struct doubt_name {
   point_flags flag;
   std::string_view name;
 };
-inline constexpr std::array<doubt, 6> doubts{{
+inline constexpr std::array<doubt_name, 6> doubts{{
     {point_flags::too_near, "too_near"},
     {point_flags::not_deskewed, "not_deskewed"},
     {point_flags::unlikely, "unlikely"},

@@ -7,7 +7,7 @@
 #include "cli/common_options.hpp"
 #include "cli/exit_code.hpp"
 #include "cli/verbs.hpp"
-#include "io/source.hpp"
+#include "io/source_word.hpp"
 
 namespace g4_tool {
 

@@ -30,8 +30,8 @@ struct output_form {
 
   [[nodiscard]] bool has_scan_files() const noexcept { return file != scan_file::none; }
   /// The ranges of a revolution, of which a G4 measures 1286 at 7 Hz; 0: points and no grid.
-  [[nodiscard]] std::size_t bins_of(const model& which) const {
-    return log == slam_log::carmen && bins == 0 ? std::size_t{2} * default_bins(which) : bins;
+  [[nodiscard]] std::size_t bins_of(const model& model) const {
+    return log == slam_log::carmen && bins == 0 ? std::size_t{2} * default_bins(model) : bins;
   }
 };
 
@@ -41,8 +41,8 @@ struct chosen_writer {
   point_file_writer* point_file = nullptr;
 };
 
-/// Of points of a lidar like `which`, in frame and unit of `common`. `files`: of has_scan_files(), if there are several.
+/// Of points of a lidar like `model`, in frame and unit of `common`. `files`: of has_scan_files(), if there are several.
 [[nodiscard]] chosen_writer make_writer(const output_form& form, const common_options& common,
-                                        const model& which, const numbered_files& files);
+                                        const model& model, const numbered_files& files);
 
 }  // namespace g4_tool

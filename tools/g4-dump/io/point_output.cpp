@@ -101,10 +101,10 @@ void point_output::open(bool has_end) {
                is_whole ? output::appears::whole : output::appears::growing);
 }
 
-void point_output::use_model(const model& which) {
-  how_.model = &which;
-  how_.for_grid = options_.form.bins_of(which) > 0;
-  auto [writer, point_file] = make_writer(options_.form, common_, which, files_);
+void point_output::use_model(const model& model) {
+  how_.model = &model;
+  how_.for_grid = options_.form.bins_of(model) > 0;
+  auto [writer, point_file] = make_writer(options_.form, common_, model, files_);
   point_file_ = point_file;
   writer_ = std::make_unique<shaping_writer>(std::move(writer), how_);
 }

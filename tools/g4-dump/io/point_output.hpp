@@ -43,7 +43,7 @@ class point_output {
   /// Opens OUT. `has_end`: what is read has one, so that OUT appears when everything is written.
   void open(bool has_end);
   /// Makes the writer, with the columns and the turn of the model. After open().
-  void use_model(const model& which);
+  void use_model(const model& model);
 
   [[nodiscard]] output& out() noexcept {
     return *out_;  // NOLINT(bugprone-unchecked-optional-access): made by open()

@@ -9,7 +9,7 @@
 #include "cli/logger.hpp"
 #include "io/input.hpp"
 #include "io/interrupt.hpp"
-#include "io/source.hpp"
+#include "io/source_word.hpp"
 #include "read_loop.hpp"
 
 namespace g4_tool {

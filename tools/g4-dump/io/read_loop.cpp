@@ -10,7 +10,7 @@
 #include "cli/logger.hpp"
 #include "io/interrupt.hpp"
 #include "io/output.hpp"
-#include "io/source.hpp"
+#include "io/source_word.hpp"
 
 namespace g4_tool {
 namespace {

@@ -13,7 +13,7 @@
 
 #include "cli/exit_code.hpp"
 #include "cli/logger.hpp"
-#include "cli/rows.hpp"
+#include "cli/option_rows.hpp"
 #include "g4lidar/motion.hpp"
 #include "g4lidar/motion/odometry_feed.hpp"
 #include "g4lidar/recording/reader.hpp"

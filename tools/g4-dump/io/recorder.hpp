@@ -8,7 +8,7 @@
 #include "cli/common_options.hpp"
 #include "cli/exit_code.hpp"
 #include "g4lidar/recording/writer.hpp"
-#include "io/source.hpp"
+#include "io/source_word.hpp"
 
 namespace g4_tool {
 

@@ -20,42 +20,43 @@ sample_layout layout_with(sample_layout now, const point_lines& text) {
   return longest_range_mm(now) > longest_range_mm(quarter_mm) ? intensity_16 : intensity_10;
 }
 
-/// The model of the points in `in`: the one that `common` names, else a G4; with samples of another layout
+/// The model of the points in `input`: the one that `common` names, else a G4; with samples of another layout
 /// if the first line shows that the points have an intensity or flags that those of the model do not
 /// have. Reads ahead. Reports where no model is named and the G4 has to be taken for another lidar.
-g4lidar::model model_of_text(input& in, text_source form, const common_options& common) {
+g4lidar::model model_of_text(input& input, text_source form, const common_options& common) {
   const g4lidar::model* const named = common.expected.model;
   g4lidar::model made = named == nullptr ? g4_model : *named;
   point_lines lines(form, g4lidar::frame::vendor, made);
-  static_cast<void>(lines.read(in.first_line(common)));
+  static_cast<void>(lines.read(input.first_line(common)));
   if (lines.unexpected().empty()) {
     if (named == nullptr && common.frame == g4lidar::frame::robot) {
       logger::info(
           fmt::format("{} does not name a lidar: its points are turned as those of {} {}; "
                       "--model names another\n",
-                      in.title(), article_of(made), made.name));
+                      input.title(), article_of(made), made.name));
     }
     return made;
   }
   if (named == nullptr) {
-    logger::info(fmt::format(
-        "{} has {}, which {} {} does not measure; its directions are read as those of "
-        "{} {}; --model names another\n",
-        in.title(), lines.unexpected(), article_of(made), made.name, article_of(made), made.name));
+    logger::info(
+        fmt::format("{} has {}, which {} {} does not measure; its directions are read as those of "
+                    "{} {}; --model names another\n",
+                    input.title(), lines.unexpected(), article_of(made), made.name,
+                    article_of(made), made.name));
   }
   made.samples.layout = layout_with(made.samples.layout, lines);
   return made;
 }
 
-/// Reports the counts of the text `title`, whose points are those of a lidar like `which`. Throws a failure if it has
+/// Reports the counts of the text `title`, whose points are those of a lidar like `model`. Throws a failure if it has
 /// no points, or values in later lines that the first one does not announce.
-void report_text(const text_points& text, const std::string& title, const g4lidar::model& which) {
+void report_text(const text_points& text, const std::string& title, const g4lidar::model& model) {
   if (!text.unexpected().empty()) {
     throw failure(
         exit_code::bad_file,
         fmt::format("{} has {} only in later lines, and {} {} does not measure it. Name the "
                     "lidar that measured these points with --model.",
-                    title, text.unexpected(), article_of(which), which.name));
+                    title, text.unexpected(), article_of(model), model.name));
   }
   const auto& [line, column] = text.first_bad_line();
   const std::string first_bad =

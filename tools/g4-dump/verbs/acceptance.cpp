@@ -15,7 +15,7 @@
 #include <variant>
 #include <vector>
 
-#include "acceptance/rows.hpp"
+#include "acceptance/kit_rows.hpp"
 #include "cli/common_options.hpp"
 #include "cli/exit_code.hpp"
 #include "cli/logger.hpp"
@@ -26,8 +26,8 @@
 #include "io/interrupt.hpp"
 #include "io/output.hpp"
 #include "io/recorder.hpp"
-#include "io/source.hpp"
-#include "verbs/verbs.hpp"
+#include "io/source_word.hpp"
+#include "verbs/dump_verbs.hpp"
 
 namespace g4_tool {
 namespace {
@@ -121,12 +121,12 @@ std::string text_of_step(const acceptance::step_result& of) {
 }
 
 /// Each open question with its answer, or with the reason why it has none.
-std::string questions_of(const model& which, const std::vector<acceptance::step_result>& all) {
+std::string questions_of(const model& model, const std::vector<acceptance::step_result>& all) {
   constexpr std::array<std::string_view, 3> marks{"open", "-", "yes"};
   std::string text =
       "\nOpen questions (yes: answered; -: does not arise with this model; open: not decided):\n";
   auto row = acceptance::question_rows().begin();
-  for (const acceptance::question_answer& each : answers_of(which, all)) {
+  for (const acceptance::question_answer& each : answers_of(model, all)) {
     text += fmt::format("  {:<5}", marks.at(static_cast<std::size_t>(each.how)));
     text += wrapped(fmt::format("{} {}", (row++)->text, printable(each.text)), answer_indent,
                     answer_indent) +

@@ -25,7 +25,7 @@
 #include "io/read_loop.hpp"
 #include "io/recorder.hpp"
 #include "io/text_input.hpp"
-#include "verbs/verbs.hpp"
+#include "verbs/dump_verbs.hpp"
 
 namespace g4_tool {
 namespace {
@@ -111,9 +111,9 @@ file_form form_of_output(const convert_options& options) {
                   name));
 }
 
-void check_combination(const convert_options& options, file_form from, file_form to) {
+void check_combination(const convert_options& options, file_form form, file_form to) {
   const bool to_points = to >= file_form::csv;
-  if (from >= file_form::csv && !to_points) {
+  if (form >= file_form::csv && !to_points) {
     throw bad_value(
         fmt::format("{} holds points, not bytes of a lidar: it can be converted to other formats "
                     "of points, but not to raw bytes or a recording",
@@ -133,7 +133,7 @@ void check_combination(const convert_options& options, file_form from, file_form
     throw bad_value("--points, --order, --no-return and --near-as are for recordings");
   }
   const bool keeps_bytes =
-      to == file_form::raw_bytes || (to == file_form::recording && from == file_form::recording);
+      to == file_form::raw_bytes || (to == file_form::recording && form == file_form::recording);
   if (keeps_bytes && options.points.common->expected.zero_angle) {
     throw bad_value(
         "the bytes stay as they are: --zero-angle is for points, and for a recording of raw bytes");
@@ -149,7 +149,7 @@ void check_combination(const convert_options& options, file_form from, file_form
   }
 }
 
-int to_points(convert_options options, file_form from, file_form to) {
+int to_points(convert_options options, file_form given, file_form to) {
   using enum point_file_format;
   static const std::map<file_form, point_file_format> point_files{
       {file_form::npy, npy}, {file_form::npz, npz}, {file_form::ply, ply}, {file_form::xyz, xyz}};
@@ -162,8 +162,8 @@ int to_points(convert_options options, file_form from, file_form to) {
   job.common->marks.near = options.made.near;
   job.partial = to != file_form::pcd && form.log == slam_log::none;
   form.style.format = to == file_form::csv ? text_format::csv : text_format::jsonl;
-  if (from < file_form::csv) return run(job);
-  const bool is_csv = from == file_form::csv;
+  if (given < file_form::csv) return run(job);
+  const bool is_csv = given == file_form::csv;
   return convert_text(job, is_csv ? text_source::csv : text_source::jsonl, options.text_frame);
 }
 
@@ -218,12 +218,12 @@ void copy_bytes(const convert_options& options, output& out) {
   }
 }
 
-int to_bytes(const convert_options& options, file_form from) {
+int to_bytes(const convert_options& options, file_form form) {
   output out(options.out());
   if (out.is_terminal()) {
     throw failure(exit_code::usage, "raw bytes are not for a terminal. Give a file as OUT.");
   }
-  from == file_form::recording ? copy_recording(options, out) : copy_bytes(options, out);
+  form == file_form::recording ? copy_recording(options, out) : copy_bytes(options, out);
   out.commit();
   return exit_code_now();
 }

@@ -11,7 +11,7 @@
 #include "io/interrupt.hpp"
 #include "io/output.hpp"
 #include "io/read_loop.hpp"
-#include "verbs/verbs.hpp"
+#include "verbs/dump_verbs.hpp"
 
 namespace g4_tool {
 namespace {

@@ -21,9 +21,9 @@
 #include "io/command_source.hpp"
 #include "io/interrupt.hpp"
 #include "io/output.hpp"
-#include "io/source.hpp"
+#include "io/source_word.hpp"
+#include "verbs/dump_verbs.hpp"
 #include "verbs/problem_report.hpp"
-#include "verbs/verbs.hpp"
 
 namespace g4_tool {
 namespace {

@@ -12,15 +12,15 @@
 #include <vector>
 
 #include "cli/exit_code.hpp"
-#include "cli/settings.hpp"
 #include "g4lidar/core/request.hpp"
+#include "cli/setting_words.hpp"
 #include "g4lidar/lidar_options.hpp"
 #include "g4lidar/recording/reader.hpp"
 #include "g4lidar/transport/source.hpp"
 #include "io/command_source.hpp"
 #include "io/interrupt.hpp"
 #include "io/output.hpp"
-#include "verbs/verbs.hpp"
+#include "verbs/dump_verbs.hpp"
 
 namespace g4_tool {
 namespace {

@@ -12,14 +12,14 @@
 
 #include "cli/exit_code.hpp"
 #include "cli/logger.hpp"
-#include "cli/settings.hpp"
+#include "cli/setting_words.hpp"
 #include "g4lidar/discovery.hpp"
 #include "g4lidar/transport/serial_port.hpp"
 #include "io/command_source.hpp"
 #include "io/interrupt.hpp"
 #include "io/output.hpp"
 #include "io/port_row.hpp"
-#include "verbs/verbs.hpp"
+#include "verbs/dump_verbs.hpp"
 
 namespace g4_tool {
 namespace {

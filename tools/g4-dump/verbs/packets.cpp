@@ -18,8 +18,8 @@
 #include "io/interrupt.hpp"
 #include "io/output.hpp"
 #include "io/read_loop.hpp"
-#include "io/source.hpp"
-#include "verbs/verbs.hpp"
+#include "io/source_word.hpp"
+#include "verbs/dump_verbs.hpp"
 
 namespace g4_tool {
 namespace {
@@ -30,9 +30,9 @@ struct packets_options {
   bool is_model_known = true;
 };
 
-/// The style for packets of `which`.
-protocol_log_style style_for(protocol_log_style style, const g4lidar::model& which) {
-  style.format = which.samples;
+/// The style for packets of `model`.
+protocol_log_style style_for(protocol_log_style style, const g4lidar::model& model) {
+  style.format = model.samples;
   return style;
 }
 
@@ -139,11 +139,11 @@ void list_lidar(const packets_options& options) {
   const time_style wanted = common.time.value_or(time_style::absolute);
   std::unique_ptr<protocol_log> log;
   const g4lidar::model* logged = nullptr;
-  const auto begin = [&](const g4lidar::model& which) {
-    if (log && *logged == which) return;
+  const auto begin = [&](const g4lidar::model& model) {
+    if (log && *logged == model) return;
     if (log) log->finish();
-    logged = &which;
-    log = std::make_unique<protocol_log>(style_for(options.style, which),
+    logged = &model;
+    log = std::make_unique<protocol_log>(style_for(options.style, model),
                                          time_shift(wanted, wall_clock().ahead().count()), kept);
   };
   begin(g4_model);  // if nothing can be opened

@@ -9,7 +9,7 @@
 
 #include "g4lidar/transport/source.hpp"
 #include "io/point_run.hpp"
-#include "verbs/verbs.hpp"
+#include "verbs/dump_verbs.hpp"
 
 namespace g4_tool {
 namespace {

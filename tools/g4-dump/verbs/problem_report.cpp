@@ -19,8 +19,8 @@
 #include "g4lidar/version.hpp"
 #include "io/interrupt.hpp"
 #include "io/recorder.hpp"
-#include "io/source.hpp"
-#include "verbs/verbs.hpp"
+#include "io/source_word.hpp"
+#include "verbs/dump_verbs.hpp"
 
 namespace g4_tool {
 namespace {

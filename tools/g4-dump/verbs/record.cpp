@@ -7,13 +7,13 @@
 #include "cli/common_options.hpp"
 #include "cli/exit_code.hpp"
 #include "cli/logger.hpp"
-#include "cli/rows.hpp"
+#include "cli/option_rows.hpp"
 #include "io/command_files.hpp"
 #include "io/input.hpp"
 #include "io/interrupt.hpp"
 #include "io/read_loop.hpp"
 #include "io/recorder.hpp"
-#include "verbs/verbs.hpp"
+#include "verbs/dump_verbs.hpp"
 
 namespace g4_tool {
 namespace {

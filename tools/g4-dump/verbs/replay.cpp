@@ -12,7 +12,7 @@
 #include "io/interrupt.hpp"
 #include "io/point_run.hpp"
 #include "io/recorder.hpp"
-#include "verbs/verbs.hpp"
+#include "verbs/dump_verbs.hpp"
 
 namespace g4_tool {
 namespace {

@@ -11,7 +11,7 @@
 
 #include "cli/exit_code.hpp"
 #include "cli/serve_verb.hpp"
-#include "verbs/verbs.hpp"
+#include "verbs/dump_verbs.hpp"
 
 namespace g4_tool {
 namespace {

@@ -9,14 +9,14 @@
 
 #include "cli/exit_code.hpp"
 #include "cli/logger.hpp"
-#include "cli/settings.hpp"
 #include "g4lidar/core/request.hpp"
 #include "g4lidar/options/lidar_parameters.hpp"
 #include "g4lidar/transport/source.hpp"
+#include "cli/setting_words.hpp"
 #include "io/command_source.hpp"
 #include "io/interrupt.hpp"
 #include "io/output.hpp"
-#include "verbs/verbs.hpp"
+#include "verbs/dump_verbs.hpp"
 
 namespace g4_tool {
 namespace {
@@ -70,22 +70,22 @@ void execute(g4lidar::lidar& lidar, const setting_change& wanted, output& out, b
 }
 
 /// "has 5 to 12 Hz": what the model can have.
-std::string possible_values(const g4lidar::model& which, const setting_info& of) {
-  const parameter_limits row = limits_of(*find_parameter(of.name), &which);
-  if (of.type == setting_type::decimal)
+std::string possible_values(const g4lidar::model& model, const setting_info& setting) {
+  const parameter_limits row = limits_of(*find_parameter(setting.name), &model);
+  if (setting.type == setting_type::decimal)
     return fmt::format("has {} to {} Hz", row.range[0], row.range[1]);
-  if (of.type != setting_type::whole) return "cannot have it";
+  if (setting.type != setting_type::whole) return "cannot have it";
   return fmt::format("has {} samples per second", row.constraints);
 }
 
 /// Throws a bad_value if the lidar cannot have one of the values: then nothing is changed.
-void check(const std::vector<setting_change>& changes, const g4lidar::model& which) {
+void check(const std::vector<setting_change>& changes, const g4lidar::model& model) {
   for (const setting_change& each : changes) {
     const request wanted = change_to(each.value);
-    if (!has_request(which, wanted.what) || is_possible(wanted, which)) continue;
+    if (!has_request(model, wanted.what) || is_possible(wanted, model)) continue;
     throw bad_value(fmt::format("{}={}: {} {} {}", each.which->name, text_of(each.value),
-                                article_of(which), which.name,
-                                possible_values(which, *each.which)));
+                                article_of(model), model.name,
+                                possible_values(model, *each.which)));
   }
 }
 

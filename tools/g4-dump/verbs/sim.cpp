@@ -11,7 +11,7 @@
 
 #include "cli/exit_code.hpp"
 #include "cli/logger.hpp"
-#include "cli/rows.hpp"
+#include "cli/option_rows.hpp"
 #include "export/digits.hpp"
 #include "export/protocol_log.hpp"
 #include "g4lidar/core/model.hpp"
@@ -19,7 +19,7 @@
 #include "io/interrupt.hpp"
 #include "io/output.hpp"
 #include "sim.hpp"
-#include "verbs/verbs.hpp"
+#include "verbs/dump_verbs.hpp"
 
 namespace g4_tool {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "g4lidar/sim/odometry.hpp"
 #include "g4lidar/sim/setup.hpp"
-#include "io/source.hpp"
+#include "io/source_word.hpp"
 
 namespace g4_tool {
 

@@ -12,9 +12,9 @@
 #include "g4lidar/sim/scanner.hpp"
 #include "io/interrupt.hpp"
 #include "io/output.hpp"
-#include "io/source.hpp"
+#include "io/source_word.hpp"
 #include "sim.hpp"
-#include "verbs/verbs.hpp"
+#include "verbs/dump_verbs.hpp"
 
 namespace g4_tool {
 namespace {

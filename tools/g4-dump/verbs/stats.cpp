@@ -18,8 +18,8 @@
 #include "io/interrupt.hpp"
 #include "io/output.hpp"
 #include "io/read_loop.hpp"
-#include "io/source.hpp"
-#include "verbs/verbs.hpp"
+#include "io/source_word.hpp"
+#include "verbs/dump_verbs.hpp"
 
 namespace g4_tool {
 namespace {

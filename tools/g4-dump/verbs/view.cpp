@@ -16,7 +16,7 @@
 #include "io/interrupt.hpp"
 #include "io/output.hpp"
 #include "io/service_source.hpp"
-#include "verbs/verbs.hpp"
+#include "verbs/dump_verbs.hpp"
 #include "view/newest_scan.hpp"
 #include "view/picture.hpp"
 #include "view/screen.hpp"

@@ -20,7 +20,7 @@
 #include "io/interrupt.hpp"
 #include "io/output.hpp"
 #include "io/port_row.hpp"
-#include "verbs/verbs.hpp"
+#include "verbs/dump_verbs.hpp"
 
 namespace g4_tool {
 namespace {

@@ -14,29 +14,29 @@ constexpr char32_t braille_begin = 0x2800;
 
 }  // namespace
 
-canvas::canvas(int columns, int rows, glyphs how)
+canvas::canvas(int columns, int rows, glyphs glyphs)
     : columns_(std::max(columns, 0)),
       rows_(std::max(rows, 0)),
-      how_(how),
+      how_(glyphs),
       places_(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_)) {}
 
-void canvas::dot(int x, int y, ink what) {
+void canvas::dot(int x, int y, ink colour) {
   if (x < 0 || y < 0 || !has(x / dots_across(), y / dots_down())) return;
   place& in = places_[index(x / dots_across(), y / dots_down())];
   const auto row = static_cast<std::size_t>(y % dots_down());
   const auto column = static_cast<std::size_t>(x % dots_across());
   const std::uint8_t bit = braille_dots.at(row).at(column);
-  std::uint8_t& dots = what == ink::grid ? in.grid : in.points;
+  std::uint8_t& dots = colour == ink::grid ? in.grid : in.points;
   dots = static_cast<std::uint8_t>(dots | bit);
 }
 
-void canvas::write(int column, int row, std::string_view words, ink what, cell_area within) {
+void canvas::write(int column, int row, std::string_view words, ink ink, cell_area within) {
   const int end = within.columns > 0 ? within.column + within.columns : columns_;
   for (const char letter : words) {
     if (column < end && has(column, row)) {
       place& in = places_[index(column, row)];
       in.word = letter >= ' ' && letter <= '~' ? letter : '?';
-      in.what = what;
+      in.what = ink;
     }
     ++column;
   }

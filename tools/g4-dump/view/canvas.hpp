@@ -34,7 +34,7 @@ struct canvas_cell {
 /// Drawing outside of it has no effect. Text hides dots, and points hide the grid.
 class canvas {
  public:
-  canvas(int columns, int rows, glyphs how);
+  canvas(int columns, int rows, glyphs glyphs);
 
   [[nodiscard]] int columns() const noexcept { return columns_; }
   [[nodiscard]] int rows() const noexcept { return rows_; }
@@ -44,9 +44,9 @@ class canvas {
   [[nodiscard]] int dots_down() const noexcept { return how_ == glyphs::braille ? 4 : 2; }
 
   /// Draws a dot of the grid or a point; x and y count dots from the left and from the top.
-  void dot(int x, int y, ink what);
+  void dot(int x, int y, ink ink);
   /// Writes ASCII text, cut at the edge of `within` (empty: the whole canvas).
-  void write(int column, int row, std::string_view words, ink what, cell_area within = {});
+  void write(int column, int row, std::string_view words, ink ink, cell_area within = {});
 
   [[nodiscard]] canvas_cell at(int column, int row) const noexcept;
   /// A row in UTF-8 without trailing blanks.

@@ -42,10 +42,10 @@ class newest_scan final : public service_sink {
     }
     wake_.wake();
   }
-  void on_event(std::size_t /*lidar*/, const lidar_event& what,
+  void on_event(std::size_t /*lidar*/, const lidar_event& event,
                 std::int64_t /*stamp_ns*/) override {
     const std::lock_guard lock(mutex_);
-    event_ = name_of(what.what);
+    event_ = name_of(event.what);
   }
   void on_state(std::size_t /*lidar*/, reader_state /*state*/,
                 const std::optional<error>& /*why*/) override {

@@ -46,7 +46,7 @@ struct view_settings {
 
 /// Draws the picture on a canvas of any size. Without room for the panel its facts are in one line below the
 /// radar; without room for the radar there is only that line.
-void draw_view(canvas& on, std::span<const g4lidar::point> points, const view_facts& facts,
-               const view_settings& how);
+void draw_view(canvas& canvas, std::span<const g4lidar::point> points, const view_facts& facts,
+               const view_settings& settings);
 
 }  // namespace g4_tool

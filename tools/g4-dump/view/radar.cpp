@@ -38,11 +38,11 @@ struct scale {
   double dots_per_m;
   int begin_x, begin_y, end_x, end_y;
 
-  scale(const canvas& on, const cell_area& in, double range_m)
-      : begin_x(in.column * on.dots_across()),
-        begin_y(in.row * on.dots_down()),
-        end_x((in.column + in.columns) * on.dots_across()),
-        end_y((in.row + in.rows) * on.dots_down()) {
+  scale(const canvas& canvas, const cell_area& area, double range_m)
+      : begin_x(area.column * canvas.dots_across()),
+        begin_y(area.row * canvas.dots_down()),
+        end_x((area.column + area.columns) * canvas.dots_across()),
+        end_y((area.row + area.rows) * canvas.dots_down()) {
     x = (begin_x + end_x - 1) / 2.0;
     y = (begin_y + end_y - 1) / 2.0;
     const double radius = (std::min(end_x - begin_x, end_y - begin_y) - 1) / 2.0;
@@ -55,17 +55,17 @@ struct scale {
   [[nodiscard]] int row_of(const radar_view& view) const {
     return static_cast<int>(y - view.robot.x_m * dots_per_m);
   }
-  void dot(canvas& on, double right_m, double up_m, ink what) const {
+  void dot(canvas& canvas, double right_m, double up_m, ink ink) const {
     const double at_x = x + right_m * dots_per_m;
     const double at_y = y - up_m * dots_per_m;
     const int column = static_cast<int>(std::lround(at_x));
     const int row = static_cast<int>(std::lround(at_y));
     if (column < begin_x || column >= end_x || row < begin_y || row >= end_y) return;
-    on.dot(column, row, what);
+    canvas.dot(column, row, ink);
   }
 };
 
-void draw_grid(canvas& on, const cell_area& in, const scale& to, const radar_view& view) {
+void draw_grid(canvas& canvas, const cell_area& area, const scale& to, const radar_view& view) {
   const double step_m = steps[level_of(view.range_m)];
   const int rings = static_cast<int>(view.range_m / step_m + 1e-9);
   for (int ring = 1; ring <= rings; ++ring) {
@@ -74,13 +74,13 @@ void draw_grid(canvas& on, const cell_area& in, const scale& to, const radar_vie
     const int dots = 4 * std::max(2, static_cast<int>(radius / 2.0));  // about every third one
     for (int i = 0; i < dots; ++i) {
       const double turn = 2.0 * std::numbers::pi * i / dots;
-      to.dot(on, ring_m * std::sin(turn) - view.robot.y_m, ring_m * std::cos(turn) + view.robot.x_m,
-             ink::grid);
+      to.dot(canvas, ring_m * std::sin(turn) - view.robot.y_m,
+             ring_m * std::cos(turn) + view.robot.x_m, ink::grid);
     }
     const double top = to.y - view.robot.x_m * to.dots_per_m - radius;
-    const int row = static_cast<int>(std::lround(top)) / on.dots_down();
-    const int column = to.column_of(view) / on.dots_across() + 1;
-    if (row >= in.row) on.write(column, row, fmt::format("{:g} m", ring_m), ink::faint, in);
+    const int row = static_cast<int>(std::lround(top)) / canvas.dots_down();
+    const int column = to.column_of(view) / canvas.dots_across() + 1;
+    if (row >= area.row) canvas.write(column, row, fmt::format("{:g} m", ring_m), ink::faint, area);
   }
 }
 
@@ -109,14 +109,14 @@ double range_for(std::span<const point> points) noexcept {
   return ranges.back();
 }
 
-void draw_radar(canvas& on, const cell_area& in, std::span<const point> points,
+void draw_radar(canvas& canvas, const cell_area& area, std::span<const point> points,
                 const radar_view& view) {
-  if (in.columns < 3 || in.rows < 2) return;
-  const scale to(on, in, view.range_m);
-  if (view.grid) draw_grid(on, in, to, view);
+  if (area.columns < 3 || area.rows < 2) return;
+  const scale to(canvas, area, view.range_m);
+  if (view.grid) draw_grid(canvas, area, to, view);
   const bool is_robot = view.frame == g4lidar::frame::robot;
   for (const g4lidar::xy_point& at : view.traces)
-    to.dot(on, -static_cast<double>(at.y_m), static_cast<double>(at.x_m), ink::grid);
+    to.dot(canvas, -static_cast<double>(at.y_m), static_cast<double>(at.x_m), ink::grid);
   const g4lidar::rotation turned = g4lidar::rotation_by(view.robot.yaw_rad);
   for (const point& each : points) {
     if (each.is_no_return()) continue;
@@ -127,14 +127,15 @@ void draw_radar(canvas& on, const cell_area& in, std::span<const point> points,
         view.robot.y_m + turned.sine * ahead_m + turned.cosine * (is_robot ? side_m : -side_m);
     const double up_m =
         view.robot.x_m + turned.cosine * ahead_m - turned.sine * (is_robot ? side_m : -side_m);
-    to.dot(on, -left_m, up_m, ink::points);
+    to.dot(canvas, -left_m, up_m, ink::points);
   }
   const int row = to.row_of(view);
   if (row >= 0)
-    on.write(to.column_of(view) / on.dots_across(), row / on.dots_down(), "+", ink::title, in);
+    canvas.write(to.column_of(view) / canvas.dots_across(), row / canvas.dots_down(), "+",
+                 ink::title, area);
   if (!view.grid) return;
   const char* const up = view.is_map ? "x" : is_robot ? "^" : "0";
-  on.write(static_cast<int>(to.x) / on.dots_across(), in.row, up, ink::title, in);
+  canvas.write(static_cast<int>(to.x) / canvas.dots_across(), area.row, up, ink::title, area);
 }
 
 }  // namespace g4_tool

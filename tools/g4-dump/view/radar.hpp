@@ -29,7 +29,7 @@ struct radar_view {
 /// The next smaller or larger zoom range; the last one stays.
 [[nodiscard]] double next_range(double range_m, bool farther) noexcept;
 
-void draw_radar(canvas& on, const cell_area& in, std::span<const g4lidar::point> points,
+void draw_radar(canvas& canvas, const cell_area& area, std::span<const g4lidar::point> points,
                 const radar_view& view);
 
 }  // namespace g4_tool

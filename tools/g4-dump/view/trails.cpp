@@ -69,26 +69,26 @@ void trails::change_length() {
   }
 }
 
-void trails::show(radar_view& in, bool wants_map) {
+void trails::show(radar_view& view, bool wants_map) {
   shown_.clear();
-  in.robot = {};
-  in.traces = {};
-  in.is_map = false;
-  if (!place_ || in.frame != g4lidar::frame::robot) return;
-  in.is_map = wants_map;
+  view.robot = {};
+  view.traces = {};
+  view.is_map = false;
+  if (!place_ || view.frame != g4lidar::frame::robot) return;
+  view.is_map = wants_map;
   const pose_2d& robot = place_->pose;
-  if (std::abs(robot.x_m - middle_.x_m) > free_part * in.range_m ||
-      std::abs(robot.y_m - middle_.y_m) > free_part * in.range_m) {
+  if (std::abs(robot.x_m - middle_.x_m) > free_part * view.range_m ||
+      std::abs(robot.y_m - middle_.y_m) > free_part * view.range_m) {
     middle_ = {robot.x_m, robot.y_m, 0};
   }
-  const pose_2d map = in.is_map ? inverse(middle_) : inverse(robot);
-  if (in.is_map) in.robot = map * robot;
+  const pose_2d map = view.is_map ? inverse(middle_) : inverse(robot);
+  if (view.is_map) view.robot = map * robot;
   const placing in_picture(map);
   for (const xy_point& each : way_) shown_.push_back(in_picture(each));
   for (const revolution& each : kept_) {
     for (const xy_point& at : each.returns) shown_.push_back(in_picture(at));
   }
-  in.traces = shown_;
+  view.traces = shown_;
 }
 
 }  // namespace g4_tool

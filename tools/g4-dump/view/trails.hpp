@@ -24,7 +24,7 @@ class trails {
   [[nodiscard]] bool has_map() const noexcept { return place_.has_value(); }
   /// Sets what is to be drawn, and where. `wants_map`: in the map, if there is one; else in the robot's frame.
   /// Views this, until the next call of any function.
-  void show(radar_view& in, bool wants_map);
+  void show(radar_view& view, bool wants_map);
 
  private:
   struct revolution {

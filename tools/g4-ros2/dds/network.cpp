@@ -17,7 +17,7 @@
 #include <sstream>
 
 #include "cli/logger.hpp"
-#include "cli/rows.hpp"
+#include "cli/option_rows.hpp"
 
 namespace g4_tool::dds {
 namespace {

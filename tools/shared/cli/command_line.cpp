@@ -223,9 +223,9 @@ std::function<int()> guarded(const verb& chosen) {
   };
 }
 
-/// How many words at `at` belong to a global option, which may precede the verb; 0: none.
-std::size_t global_option_words(const std::vector<std::string>& words, std::size_t at) {
-  const std::string& word = words[at];
+/// How many words at `offset` belong to a global option, which may precede the verb; 0: none.
+std::size_t global_option_words(const std::vector<std::string>& words, std::size_t offset) {
+  const std::string& word = words[offset];
   if (word == "--color") return 2;
   if (word == "--quiet" || word == "--verbose" || word == "--json-errors") return 1;
   if (word.starts_with("--color=")) return 1;

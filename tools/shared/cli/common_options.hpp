@@ -19,7 +19,7 @@
 #include "g4lidar/point.hpp"
 #include "g4lidar/recording/writer.hpp"
 #include "g4lidar/scan_shaper.hpp"
-#include "rows.hpp"
+#include "option_rows.hpp"
 #include "verbs.hpp"
 #include "written_form.hpp"
 

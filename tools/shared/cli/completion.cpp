@@ -13,8 +13,8 @@
 #include "common_options.hpp"
 #include "g4lidar/discovery.hpp"
 #include "g4lidar/sim/device.hpp"
-#include "rows.hpp"
-#include "settings.hpp"
+#include "option_rows.hpp"
+#include "setting_words.hpp"
 #include "verbs.hpp"
 
 namespace g4_tool {

@@ -15,7 +15,7 @@
 #include "exit_code.hpp"
 #include "g4lidar/version.hpp"
 #include "io/output.hpp"
-#include "rows.hpp"
+#include "option_rows.hpp"
 #include "verbs.hpp"
 
 namespace g4_tool {

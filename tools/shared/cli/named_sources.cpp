@@ -9,7 +9,7 @@
 #include "common_options.hpp"
 #include "g4lidar/transport/source.hpp"
 #include "logger.hpp"
-#include "rows.hpp"
+#include "option_rows.hpp"
 
 namespace g4_tool {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <utility>
 
-#include "rows.hpp"
+#include "option_rows.hpp"
 
 namespace g4_tool {
 namespace {

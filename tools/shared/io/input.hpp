@@ -20,7 +20,7 @@
 #include "g4lidar/recording/reader.hpp"
 #include "interrupt.hpp"
 #include "output.hpp"
-#include "source.hpp"
+#include "source_word.hpp"
 
 namespace g4_tool {
 

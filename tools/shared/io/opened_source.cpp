@@ -11,16 +11,16 @@
 #include "g4lidar/transport/transport.hpp"
 #include "input.hpp"
 #include "interrupt.hpp"
-#include "source.hpp"
+#include "source_word.hpp"
 
 namespace g4_tool {
 namespace {
 
 /// Throws a bad_value for --zero-angle and raw bytes of a model that has no such offset.
-void refuse_without_offset(const g4lidar::model* which) {
-  if (which == nullptr || which->zero_angle_divisor != 0) return;
+void refuse_without_offset(const g4lidar::model* model) {
+  if (model == nullptr || model->zero_angle_divisor != 0) return;
   throw bad_value(
-      fmt::format("--zero-angle: {} {} has no such offset", article_of(*which), which->name));
+      fmt::format("--zero-angle: {} {} has no such offset", article_of(*model), model->name));
 }
 
 /// Keeps the first bytes that are read.
@@ -46,7 +46,7 @@ class observed_beginning final : public forwarding_transport {
 
 }  // namespace
 
-opened_source::opened_source(const common_options& options, lidar_options how) {
+opened_source::opened_source(const common_options& options, lidar_options wanted) {
   const source_kind kind = kind_of_source(options.source);
   const std::string path = path_of_source(options.source);
   const bool is_raw = kind == source_kind::raw_bytes;
@@ -54,9 +54,9 @@ opened_source::opened_source(const common_options& options, lidar_options how) {
     throw failure(exit_code::usage,
                   std::string("standard input is a terminal. ") + raw_bytes_advice);
   }
-  how = options_for(options, std::move(how));
-  how.wrap = [this, is_raw, zero = how.zero_angle,
-              wrap = std::move(how.wrap)](std::unique_ptr<connector> from) {
+  wanted = options_for(options, std::move(wanted));
+  wanted.wrap = [this, is_raw, zero = wanted.zero_angle,
+                 wrap = std::move(wanted.wrap)](std::unique_ptr<connector> from) {
     if (is_raw && zero) refuse_without_offset(from->traits().recognised.model);
     played_ = replay::reader_of(*from);
     simulation_ = simulation_of(*from);
@@ -67,13 +67,13 @@ opened_source::opened_source(const common_options& options, lidar_options how) {
       return std::make_unique<observed_beginning>(std::move(port), beginning_);
     })(*std::move(wrapped));
   };
-  const auto wait = std::exchange(how.device_wait, std::chrono::milliseconds(0));
-  auto opened = g4lidar::lidar::open(how);
-  if (!opened && wait > how.device_wait && opened.error().may_pass()) {
+  const auto wait = std::exchange(wanted.device_wait, std::chrono::milliseconds(0));
+  auto opened = g4lidar::lidar::open(wanted);
+  if (!opened && wait > wanted.device_wait && opened.error().may_pass()) {
     logger::info(fmt::format("{}\nIt is tried again until a lidar answers.\n",
                              failure_of(options, opened.error()).what()));
-    how.device_wait = wait;
-    opened = g4lidar::lidar::open(how);
+    wanted.device_wait = wait;
+    opened = g4lidar::lidar::open(wanted);
   }
   if (!opened) {
     const bool is_cancelled = opened.error() == problem::cancelled;

@@ -14,7 +14,7 @@
 
 #include "cli/exit_code.hpp"
 #include "cli/logger.hpp"
-#include "cli/rows.hpp"
+#include "cli/option_rows.hpp"
 #include "interrupt.hpp"
 
 namespace g4_tool {

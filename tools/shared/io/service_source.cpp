@@ -6,17 +6,17 @@
 #include <utility>
 
 #include "cli/logger.hpp"
-#include "cli/rows.hpp"
 #include "g4lidar/transport/source.hpp"
+#include "cli/option_rows.hpp"
 #include "input.hpp"
 #include "output.hpp"
 #include "shape_files.hpp"
-#include "source.hpp"
+#include "source_word.hpp"
 
 namespace g4_tool {
 
-service_lidar service_lidar_of(const common_options& options, const lidar_options& how) {
-  return {.options = options_for(options, how), .mount = options.mount};
+service_lidar service_lidar_of(const common_options& options, const lidar_options& wanted) {
+  return {.options = options_for(options, wanted), .mount = options.mount};
 }
 
 service_options service_options_of(const common_options& options) {

@@ -14,9 +14,9 @@
 
 namespace g4_tool {
 
-/// The lidar of these options, opened as `how` states in all else: see options_for().
+/// The lidar of these options, opened as `wanted` states in all else: see options_for().
 [[nodiscard]] service_lidar service_lidar_of(const common_options& options,
-                                             const lidar_options& how);
+                                             const lidar_options& wanted);
 /// Filters, mask and deskewing of these options. Throws a failure if the mask cannot be read.
 [[nodiscard]] service_options service_options_of(const common_options& options);
 

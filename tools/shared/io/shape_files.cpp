@@ -20,14 +20,14 @@ namespace g4_tool {
 
 namespace {
 
-/// What `in` contains, at most so much. Throws a failure, or interrupted.
-std::string text_of(input& in, std::size_t most_megabytes, const std::string& what_to_give) {
+/// What `input` contains, at most so much. Throws a failure, or interrupted.
+std::string text_of(input& input, std::size_t most_megabytes, const std::string& what_to_give) {
   std::string text;
   std::array<std::uint8_t, 16'384> part;
-  while (const std::size_t count = in.read(part)) {
+  while (const std::size_t count = input.read(part)) {
     text.append(reinterpret_cast<const char*>(part.data()), count);
     if (text.size() >> 20U >= most_megabytes) {
-      throw failure(exit_code::bad_file, fmt::format("{} is longer than {} MB. {}", in.title(),
+      throw failure(exit_code::bad_file, fmt::format("{} is longer than {} MB. {}", input.title(),
                                                      most_megabytes, what_to_give));
     }
   }
@@ -60,11 +60,11 @@ g4lidar::mask mask_in(const std::string& path) {
   throw failure(exit_code::bad_file, std::get<std::string>(made));
 }
 
-shaping_options shape_of(const common_options& how, const g4lidar::mask& loaded) {
-  shaping_options made{.filter = directions_of(how),
-                       .marks = how.marks,
-                       .deskew = how.deskew,
-                       .mount = how.mount.value_or(mounting{})};
+shaping_options shape_of(const common_options& options, const g4lidar::mask& loaded) {
+  shaping_options made{.filter = directions_of(options),
+                       .marks = options.marks,
+                       .deskew = options.deskew,
+                       .mount = options.mount.value_or(mounting{})};
   made.filter.masks = loaded.polygons();
   return made;
 }

@@ -15,8 +15,8 @@ namespace g4_tool {
 /// g4lidar::load_mask(); - is standard input. Throws a failure that names the file and the line.
 [[nodiscard]] g4lidar::mask mask_in(const std::string& path);
 
-/// The options of `how` for filters, marks and deskewing, with the mask of its file. Views both.
-[[nodiscard]] g4lidar::shaping_options shape_of(const common_options& how,
+/// The options of `options` for filters, marks and deskewing, with the mask of its file. Views both.
+[[nodiscard]] g4lidar::shaping_options shape_of(const common_options& options,
                                                 const g4lidar::mask& loaded);
 
 /// The poses in the file of that name, times ascending. Throws a failure that names the file and the line.

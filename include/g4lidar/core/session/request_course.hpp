@@ -18,10 +18,10 @@ namespace g4lidar {
 class request_course {
  public:
   /// Begins a request. It ends at the first lost answer after `limit_ns`.
-  constexpr void begin(const request& wanted, std::int64_t limit_ns, const model& which) noexcept {
+  constexpr void begin(const request& wanted, std::int64_t limit_ns, const model& model) noexcept {
     outcome_ = outcome{};
     outcome_.asked = wanted;
-    steps_ = request_retry(wanted, which);
+    steps_ = request_retry(wanted, model);
     is_running_ = true;
     is_broken_ = false;
     disturbances_ = 0;
@@ -81,8 +81,8 @@ class request_course {
   }
 
   /// The outcome, if nothing else happens before end().
-  constexpr void decide(verdict how, const answer& value) noexcept {
-    outcome_.how = how;
+  constexpr void decide(verdict verdict, const answer& value) noexcept {
+    outcome_.how = verdict;
     outcome_.value = value;
   }
   /// It has ended.

@@ -40,11 +40,11 @@ struct request_step {
 class request_retry {
  public:
   constexpr request_retry() noexcept = default;
-  /// The steps of `wanted`, which lidars like `which` have.
-  explicit constexpr request_retry(const request& wanted, const model& which = g4_model) noexcept
+  /// The steps of `wanted`, which lidars like `model` have.
+  explicit constexpr request_retry(const request& wanted, const model& model = g4_model) noexcept
       : wanted_(wanted),
-        which_(&which),
-        target_(wanted.what == request_kind::set_sample_rate ? code_of_rate(which, wanted.value)
+        which_(&model),
+        target_(wanted.what == request_kind::set_sample_rate ? code_of_rate(model, wanted.value)
                                                              : wanted.value) {}
 
   /// The first step, to a device that is idle and silent.
@@ -109,8 +109,8 @@ class request_retry {
     return {request_step::action::ask, code, has_one_answer, verdict::answered, {}};
   }
   [[nodiscard]] static constexpr request_step end(const answer& value,
-                                                  verdict how = verdict::answered) noexcept {
-    return {request_step::action::end, command::device_info, false, how, value};
+                                                  verdict end = verdict::answered) noexcept {
+    return {request_step::action::end, command::device_info, false, end, value};
   }
   [[nodiscard]] static constexpr request_step doubt() noexcept {
     return {request_step::action::doubt, command::device_info, false, verdict::answered, {}};

@@ -45,8 +45,8 @@ class LidarNode : public rclcpp_lifecycle::LifecycleNode {  // NOLINT(readabilit
   /// Starts itself, and notices the end of the lidar. Called several times a second.
   void update();
   void allow(bool runs, trigger::Response& answer);
-  /// `by`: who wants it, for the log.
-  void allow(bool runs, const std::string& by);
+  /// `cause`: who wants it, for the log.
+  void allow(bool runs, const std::string& cause);
 
   std::unique_ptr<lidar_topics> topics_;    // since the first configure; outlives the next ones
   std::shared_ptr<lidar_session> session_;  // null unless it is configured

@@ -33,10 +33,10 @@ struct motion_options {
 };
 
 /// As a sink, publishes the odometry and the time that the source states. In the thread of a lidar, but for the first two.
-class robot_motion final : public g4lidar::service_sink {
+class odometry_publisher final : public g4lidar::service_sink {
  public:
-  robot_motion(rclcpp_lifecycle::LifecycleNode& node, lidar_topics& topics,
-               const motion_options& options)
+  odometry_publisher(rclcpp_lifecycle::LifecycleNode& node, lidar_topics& topics,
+                     const motion_options& options)
       : node_(node), topics_(topics), options_(options) {}
   /// Makes what it needs of ROS, for scans whose frame is `frame_id`. `has_odometry`: the source states the motion.
   void connect(const std::string& frame_id, bool has_odometry);
@@ -48,7 +48,7 @@ class robot_motion final : public g4lidar::service_sink {
   void take(g4lidar::odometry_path& into, const g4lidar::scan& whole, std::int64_t ahead_ns);
 
  private:
-  void publish(const g4lidar::stamped_odometry& at, std::int64_t stamp_ns);
+  void publish(const g4lidar::stamped_odometry& odometry, std::int64_t stamp_ns);
   void subscribe();
   void take_subscribed(g4lidar::odometry_path& into, std::int64_t ahead_ns);
   void take_transforms(g4lidar::odometry_path& into, const g4lidar::scan& whole,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "subject.hpp"
+#include "tested_lidar.hpp"
 
 #include <algorithm>
 #include <set>
@@ -15,13 +15,13 @@ std::optional<device_information> information_in(bytes content) noexcept {
   return device_information{content[0], content[2], content[1], content[3], {}};
 }
 
-subject::subject(connector& connects, const run_options& how)
+tested_lidar::tested_lidar(connector& connects, const run_options& wanted)
     : from(connects),
-      options(how),
-      row(*how.model),
-      baud_(how.baud != 0 ? how.baud : how.model->bauds[0]) {}
+      options(wanted),
+      row(*wanted.model),
+      baud_(wanted.baud != 0 ? wanted.baud : wanted.model->bauds[0]) {}
 
-result<void> subject::open() {
+result<void> tested_lidar::open() {
   auto opened = from.connect();
   if (!opened) return tl::unexpected(opened.error());
   if (const auto rate = (*opened)->set_baud(baud_); !rate) return tl::unexpected(rate.error());
@@ -29,7 +29,7 @@ result<void> subject::open() {
   return {};
 }
 
-bool subject::reopen(std::int64_t wait_ns, bool may_be_cancelled) {
+bool tested_lidar::reopen(std::int64_t wait_ns, bool may_be_cancelled) {
   constexpr std::int64_t retry_ns = 200 * ms;
   link.reset();
   const std::int64_t until_ns = from.now_ns() + wait_ns;
@@ -43,7 +43,7 @@ bool subject::reopen(std::int64_t wait_ns, bool may_be_cancelled) {
   return false;
 }
 
-bool subject::find_baud(step_result& into) {
+bool tested_lidar::find_baud(step_result& result) {
   if (options.baud != 0) return false;
   const auto talks = [this] {
     if (!is_two_way()) return link->wait_for_packet(600 * ms) >= 0;
@@ -59,21 +59,21 @@ bool subject::find_baud(step_result& into) {
     link->read_as(row);
     if (!talks()) continue;
     baud_ = baud;
-    into.add("found_baud", baud);
+    result.add("found_baud", baud);
     return true;
   }
   if (!link->is_over()) static_cast<void>(link->port().set_baud(baud_));
   return false;
 }
 
-void subject::identify(const device_information& who) {
-  const model& same = with_firmware(*options.model, who);
+void tested_lidar::identify(const device_information& information) {
+  const model& same = with_firmware(*options.model, information);
   if (&same == options.model) return;
   row = same;
   link->read_as(row);
 }
 
-void subject::adapt_layout() {
+void tested_lidar::adapt_layout() {
   const std::size_t sent = link->sample_bytes();
   if (sent == 0 || sent == sample_size(row.samples.layout)) return;
   if (sent != sample_size(row.other_layout)) return;
@@ -81,7 +81,7 @@ void subject::adapt_layout() {
   link->read_as(row);
 }
 
-bool subject::is_same() {
+bool tested_lidar::is_same() {
   if (identified.empty()) return true;
   constexpr int tries = 5;
   for (int i = 0; i < tries && !link->is_over(); ++i) {
@@ -92,18 +92,18 @@ bool subject::is_same() {
   return false;
 }
 
-std::optional<double> subject::number(const step_result& now, std::string_view fact) const {
-  const auto in = [fact](const step_result& of) -> std::optional<double> {
-    const auto found = std::ranges::find(of.facts, fact, &evidence::name);
-    if (found == of.facts.end()) return std::nullopt;
+std::optional<double> tested_lidar::number(const step_result& now, std::string_view fact) const {
+  const auto number_in = [fact](const step_result& result) -> std::optional<double> {
+    const auto found = std::ranges::find(result.facts, fact, &evidence::name);
+    if (found == result.facts.end()) return std::nullopt;
     if (const auto* const whole = std::get_if<std::int64_t>(&found->value))
       return static_cast<double>(*whole);
     if (const auto* const value = std::get_if<double>(&found->value)) return *value;
     return std::get<std::string>(found->value) == "yes" ? 1.0 : 0.0;
   };
-  if (const auto here = in(now)) return here;
+  if (const auto here = number_in(now)) return here;
   for (auto each = results.rbegin(); each != results.rend(); ++each) {
-    if (const auto earlier = in(*each)) return earlier;
+    if (const auto earlier = number_in(*each)) return earlier;
   }
   return std::nullopt;
 }

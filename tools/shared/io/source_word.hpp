@@ -28,13 +28,13 @@ using transport_tap = std::function<std::unique_ptr<transport>(std::unique_ptr<t
 [[nodiscard]] std::function<result<std::unique_ptr<connector>>(std::unique_ptr<connector>)>
 for_each_connection(transport_tap tap);
 
-/// Throws a failure if the user has given an option that the source cannot use. `how` has those of the verb.
-void refuse_options_of_others(const common_options& options, const lidar_options& how = {});
+/// Throws a failure if the user has given an option that the source cannot use. `wanted` has those of the verb.
+void refuse_options_of_others(const common_options& options, const lidar_options& wanted = {});
 /// Throws a bad_value if --zero-angle is given, which what is done with a file does not use, and why.
 void refuse_zero_angle(const common_options& options, std::string_view why);
-/// `how` with device, model, baud, reconnect and waiting of the options. Signals cancel. The model that raw
+/// `wanted` with device, model, baud, reconnect and waiting of the options. Signals cancel. The model that raw
 /// bytes show is logged when they are opened.
-[[nodiscard]] lidar_options options_for(const common_options& options, lidar_options how);
+[[nodiscard]] lidar_options options_for(const common_options& options, lidar_options wanted);
 /// What sends the bytes of the source: that of --model or of the name, or what a file shows. Raw bytes that
 /// show it are reported by report_model(), or stored in `shown` and not reported. Null: not known before a pipe or
 /// a device is opened; then it is opened_source::model(). Throws a failure, also for options that the source cannot use, and a bad_value if a recording is of another model than that of --model.
@@ -45,7 +45,7 @@ void refuse_zero_angle(const common_options& options, std::string_view why);
 void report_model(const g4lidar::model& found, bool is_usual);
 void report_model(const recognised_model& found);
 /// Logs that the angles lack the offset of zero of this model.
-void report_missing_zero(const g4lidar::model& which);
+void report_missing_zero(const g4lidar::model& model);
 /// Logs what contradicts the model, if anything does, and once.
 void report_contradictions(const std::string& now);
 void report_contradictions(const g4lidar::recognition& found);
@@ -68,9 +68,9 @@ inline constexpr const char* raw_bytes_advice =
 /// The lidar behind the word SOURCE, and what else is there.
 class opened_source {
  public:
-  /// `how`: all but device, model, baud, reconnect and waiting, which are those of the options. With
+  /// `wanted`: all but device, model, baud, reconnect and waiting, which are those of the options. With
   /// loss_rule::wait it waits until there is a lidar or a signal comes (`interrupted`). Throws a failure.
-  explicit opened_source(const common_options& options, lidar_options how = {});
+  explicit opened_source(const common_options& options, lidar_options wanted = {});
   opened_source(const opened_source&) = delete;
   opened_source& operator=(const opened_source&) = delete;
   ~opened_source() = default;

@@ -15,7 +15,7 @@ namespace g4lidar::python {
 
 /// The only copy of the points is the array.
 struct kept_scan {
-  explicit kept_scan(const scan& from, std::int64_t wall_minus_monotonic_ns);
+  explicit kept_scan(const scan& scan, std::int64_t wall_minus_monotonic_ns);
 
   scan about;            ///< Without points.
   array<point> points;   ///< The points.
@@ -31,7 +31,8 @@ struct kept_scan {
                                        std::uint16_t turn_deg);
 /// One range for each bin, in metres. `intensities` is empty, or gets that of each bin.
 [[nodiscard]] array<float> to_ranges(const array<point>& points, std::size_t bins,
-                                     const grid_options& how, std::span<float> intensities = {});
+                                     const grid_options& options,
+                                     std::span<float> intensities = {});
 
 /// Raises ValueError if numbers are not finite, or times do not ascend.
 void require_path(std::span<const stamped_pose> path);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "rows.hpp"
+#include "option_rows.hpp"
 
 #include <algorithm>
 #include <initializer_list>
@@ -55,42 +55,48 @@ std::vector<std::string> words_of(const g4lidar::parameter& of) {
   return {words.begin(), words.end()};
 }
 
-void refuse(const std::string& wrong, const g4lidar::parameter& of, const std::string& word) {
+void refuse(const std::string& wrong, const g4lidar::parameter& parameter,
+            const std::string& word) {
   if (wrong.empty()) return;
-  const auto known = words_of(of);
+  const auto known = words_of(parameter);
   throw bad_value(wrong + did_you_mean(unknown_name(word, known), known));
 }
 
 }  // namespace
 
-option_row row_of(const g4lidar::parameter& of, std::function<void(const std::string&)> take) {
-  option_row row{flag_of(of), std::string(of.form), std::string(of.text), std::move(take)};
+option_row row_of(const g4lidar::parameter& parameter,
+                  std::function<void(const std::string&)> take) {
+  option_row row{flag_of(parameter), std::string(parameter.form), std::string(parameter.text),
+                 std::move(take)};
   const bool has_limits = row.value == "LIMITS";  // a flag, whose optional value sets some
   if (has_limits) row.optional_value = std::exchange(row.value, "");
-  if (!has_limits && !of.words.empty()) {
-    row.value = fmt::format("{}", fmt::join(words_of(of), "|"));
+  if (!has_limits && !parameter.words.empty()) {
+    row.value = fmt::format("{}", fmt::join(words_of(parameter), "|"));
     row.complete = completion::choices;
   }
   if (row.value == "FILE") row.complete = completion::input;
-  const std::string_view usual = of.unset.empty() ? of.usual : of.unset;
+  const std::string_view usual = parameter.unset.empty() ? parameter.usual : parameter.unset;
   if (!usual.empty() && usual != "off" && usual != "none") row.help += fmt::format(" ({})", usual);
   return row;
 }
 
-void store(g4lidar::lidar_options& into, const g4lidar::parameter& of, const std::string& word) {
-  const bool is_flag = of.type == 1;
-  refuse(set_option(into, of, is_flag ? g4lidar::parameter_value(true) : word), of, word);
+void store(g4lidar::lidar_options& into, const g4lidar::parameter& parameter,
+           const std::string& word) {
+  const bool is_flag = parameter.type == 1;
+  refuse(set_option(into, parameter, is_flag ? g4lidar::parameter_value(true) : word), parameter,
+         word);
 }
 
-void store(g4lidar::filter_settings& into, const g4lidar::parameter& of, const std::string& word) {
-  refuse(set_filter(into, of.name, word), of, word);
+void store(g4lidar::filter_settings& into, const g4lidar::parameter& parameter,
+           const std::string& word) {
+  refuse(set_filter(into, parameter.name, word), parameter, word);
 }
 
-std::size_t word_number(const g4lidar::parameter& of, const std::string& word) {
-  const auto known = words_of(of);
+std::size_t word_number(const g4lidar::parameter& parameter, const std::string& word) {
+  const auto known = words_of(parameter);
   const auto at = std::ranges::find(known, word);
   if (at == known.end()) {
-    refuse(fmt::format("'{}' is not one of {}", word, fmt::join(known, ", ")), of, word);
+    refuse(fmt::format("'{}' is not one of {}", word, fmt::join(known, ", ")), parameter, word);
   }
   return static_cast<std::size_t>(at - known.begin());
 }

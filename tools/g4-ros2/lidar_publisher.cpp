@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "lidar_node.hpp"
+#include "lidar_publisher.hpp"
 
 #include <fmt/format.h>
 
@@ -35,8 +35,8 @@ service_lidar lidar_of(const ros2_options& options, const common_options& how,
 
 }  // namespace
 
-lidar_node::lidar_node(dds::bus& on, const ros2_options& options,
-                       const std::vector<named_source>& lidars, bool is_first)
+lidar_publisher::lidar_publisher(dds::bus& on, const ros2_options& options,
+                                 const std::vector<named_source>& lidars, bool is_first)
     : options_(options),
       lidars_(lidars),
       name_space_(name_space_of(options, lidars)),
@@ -75,31 +75,31 @@ lidar_node::lidar_node(dds::bus& on, const ros2_options& options,
         on, full_name(name_space_, options.topics.odometry));
 }
 
-common_options lidar_node::options_of(std::size_t lidar) const {
+common_options lidar_publisher::options_of(std::size_t lidar) const {
   common_options made = options_.common;
   made.source = lidars_[lidar].source;
   made.mount = lidars_[lidar].mount;
   return made;
 }
 
-std::string lidar_node::name_space(std::size_t lidar) const {
+std::string lidar_publisher::name_space(std::size_t lidar) const {
   return full_name(options_.name_space, lidars_[lidar].name);
 }
 
-void lidar_node::start() { value_of(service_->start()); }
+void lidar_publisher::start() { value_of(service_->start()); }
 
-std::optional<failure> lidar_node::failure_of_any() const {
+std::optional<failure> lidar_publisher::failure_of_any() const {
   for (std::size_t i = 0; i < size(); ++i) {
     if (auto why = final_failure_of(options_of(i), *service_, i)) return why;
   }
   return std::nullopt;
 }
 
-std::string lidar_node::why_of(std::size_t lidar, const std::optional<error>& why) const {
+std::string lidar_publisher::why_of(std::size_t lidar, const std::optional<error>& why) const {
   return g4_tool::why_of(options_of(lidar), why, service_->counts(lidar));
 }
 
-void lidar_node::update() {
+void lidar_publisher::update() {
   const std::chrono::nanoseconds wall = std::chrono::system_clock::now().time_since_epoch();
   diagnostics_.update(
       [this] {
@@ -109,37 +109,41 @@ void lidar_node::update() {
       messages_, is_played_ ? now_ns_.load() : wall.count());
 }
 
-service_demand lidar_node::wanted() const {
+service_demand lidar_publisher::wanted() const {
   return {.for_grid = messages_.wants_scan(), .kept = messages_.wants_points()};
 }
 
-void lidar_node::on_open(std::size_t lidar, g4lidar::lidar& device) {
+void lidar_publisher::on_open(std::size_t lidar, g4lidar::lidar& device) {
   logger::verbose(fmt::format("opened {}\n", device.name()));
   if (is_played_) now_ns_ = service_->stamp_ns(lidar, device.player()->begin_ns());
 }
 
-void lidar_node::on_scan(const service_scan& made) {
+void lidar_publisher::on_scan(const service_scan& made) {
   if (made.kept.is_piece()) return;
   if (made.made.for_grid && messages_.wants_scan()) messages_.publish_scan(made);
   if (made.made.kept && messages_.wants_points()) messages_.publish_points(made);
 }
 
-void lidar_node::on_odometry(const stamped_odometry& now, std::int64_t stamp_ns) {
+void lidar_publisher::on_odometry(const stamped_odometry& now, std::int64_t stamp_ns) {
   robot_->publish(now, stamp_ns);
 }
 
-void lidar_node::on_time(std::size_t /*lidar*/, std::int64_t stamp_ns) {
+void lidar_publisher::on_time(std::size_t /*lidar*/, std::int64_t stamp_ns) {
   now_ns_ = std::max(now_ns_.load(), stamp_ns);
   robot_->publish_clock(stamp_ns);
 }
 
-void lidar_node::on_motion(bool is_known, const std::string& why) { report_motion(is_known, why); }
+void lidar_publisher::on_motion(bool is_known, const std::string& why) {
+  report_motion(is_known, why);
+}
 
-void lidar_node::on_event(std::size_t lidar, const lidar_event& what, std::int64_t /*stamp_ns*/) {
+void lidar_publisher::on_event(std::size_t lidar, const lidar_event& what,
+                               std::int64_t /*stamp_ns*/) {
   logger::info(fmt::format("{}: {}\n", service_->status(lidar).name, name_of(what.what)));
 }
 
-void lidar_node::on_state(std::size_t lidar, reader_state state, const std::optional<error>& why) {
+void lidar_publisher::on_state(std::size_t lidar, reader_state state,
+                               const std::optional<error>& why) {
   std::string text = why_of(lidar, why);
   // The failure of the only lidar is reported at the end of the program.
   if (state == reader_state::ended && options_.sources.size() <= 1) text.clear();
@@ -148,7 +152,7 @@ void lidar_node::on_state(std::size_t lidar, reader_state state, const std::opti
                            name_of(state), text.empty() ? "" : ". ", text));
 }
 
-void lidar_node::on_values(std::size_t lidar, const std::string& refused) {
+void lidar_publisher::on_values(std::size_t lidar, const std::string& refused) {
   const std::string& name = lidars_[lidar].name;
   if (!refused.empty())
     logger::info((name.empty() ? "" : name + ": ") + in_tool_words(refused) + "\n");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "settings.hpp"
+#include "setting_keywords.hpp"
 
 #include <algorithm>
 #include <cctype>
@@ -23,10 +23,10 @@ const model& model_of(live_lidar& on) {
 }
 
 template <class Number>
-void check(const setting_info& which, Number wanted, int most) {
+void check(const setting_info& setting, Number wanted, int most) {
   if (wanted >= 0 && wanted <= most) return;
   raise(error(task::configuring, problem::bad_option,
-              std::string(keyword_of(which)) + ": 0 to " + std::to_string(most) + ", not " +
+              std::string(keyword_of(setting)) + ": 0 to " + std::to_string(most) + ", not " +
                   nb::repr(nb::cast(wanted)).c_str()));
 }
 
@@ -52,40 +52,40 @@ const char* keyword_of(const setting_info& which) {
   return made.c_str();
 }
 
-answer value_for(const setting_info& which, int wanted) {
-  check(which, wanted, UINT16_MAX);
+answer value_for(const setting_info& setting, int wanted) {
+  check(setting, wanted, UINT16_MAX);
   return sample_rate{static_cast<std::uint16_t>(wanted)};
 }
 
-answer value_for(const setting_info& which, double wanted) {
-  check(which, wanted, UINT16_MAX / 100);
+answer value_for(const setting_info& setting, double wanted) {
+  check(setting, wanted, UINT16_MAX / 100);
   return scan_frequency::hz(wanted);
 }
 
-zero_angle zero_angle_from(double deg, const model* which) {
+zero_angle zero_angle_from(double deg, const model* model) {
   constexpr double beyond = 1000.0;
   const double limited = std::isnan(deg) ? beyond : std::clamp(deg, -beyond, beyond);
   lidar_options of;
-  of.model = which != nullptr ? which : model_named("tg15");  // one that has it
+  of.model = model != nullptr ? model : model_named("tg15");  // one that has it
   of.zero_angle = zero_angle{static_cast<std::int32_t>(std::lround(100.0 * limited))};
   if (const auto wrong = problem_with(of)) raise(*wrong);
   return *of.zero_angle;
 }
 
-void set(live_lidar& on, std::vector<answer> wanted, bool interrupt) {
-  const model& which = model_of(on);
+void set(live_lidar& live, std::vector<answer> wanted, bool interrupt) {
+  const model& which = model_of(live);
   const auto is_refused = [&](const answer& value) {
     const request change = change_to(value);
     return !has_request(which, change.what) || !is_possible(change, which);
   };
   std::ranges::stable_partition(wanted, is_refused);  // first, so that nothing is sent
   for (const answer& value : wanted) {
-    on.run([&](lidar& device) { return device.ask(change_to(value), allowed(interrupt)); });
+    live.run([&](lidar& device) { return device.ask(change_to(value), allowed(interrupt)); });
   }
 }
 
-nb::dict settings(live_lidar& on, bool interrupt) {
-  const model& which = model_of(on);
+nb::dict settings(live_lidar& live, bool interrupt) {
+  const model& which = model_of(live);
   nb::dict all;
   for (const setting_info& each : all_settings()) {
     if (!each.query) continue;
@@ -100,7 +100,7 @@ nb::dict settings(live_lidar& on, bool interrupt) {
         return std::nullopt;
       return tl::unexpected(given.error());
     };
-    if (const auto found = on.run(ask)) value = std::visit(as_python(), *found);
+    if (const auto found = live.run(ask)) value = std::visit(as_python(), *found);
   }
   return all;
 }

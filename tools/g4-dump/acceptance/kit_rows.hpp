@@ -13,7 +13,7 @@
 
 #include "kept_settings.hpp"
 #include "kit.hpp"
-#include "subject.hpp"
+#include "tested_lidar.hpp"
 
 namespace g4_tool::acceptance {
 
@@ -28,22 +28,22 @@ struct expected {
 struct step_row {
   step of;
   std::string_view name;
-  bool (*has)(const subject&);  ///< Whether it is done with this lidar.
-  std::string_view missing;     ///< Why it is not.
+  bool (*has)(const tested_lidar&);  ///< Whether it is done with this lidar.
+  std::string_view missing;          ///< Why it is not.
   /// Sends, listens, and states facts.
-  void (*measure)(subject&, step_result&);
+  void (*measure)(tested_lidar&, step_result&);
   setting changes = setting::none;  ///< To be set back behind the step.
 };
 
 /// What an expectation follows from.
-struct known {
-  const subject& all;
+struct known_facts {
+  const tested_lidar& lidar;
   const step_result& now;
-  const model& row = all.row;
-  bool is_two_way = all.is_two_way();
+  const model& row = lidar.row;
+  bool is_two_way = lidar.is_two_way();
   /// The number of a fact of this step, or else of an earlier one.
   [[nodiscard]] double number(std::string_view fact, double otherwise = 0.0) const {
-    return all.number(now, fact).value_or(otherwise);
+    return lidar.number(now, fact).value_or(otherwise);
   }
 };
 
@@ -51,7 +51,7 @@ struct known {
 struct check_row {
   step of;
   std::string_view fact;
-  expected (*by_table)(const known&);
+  expected (*by_table)(const known_facts&);
   bool only_refutes = false;     ///< A right value proves nothing.
   std::string_view advice = {};  ///< Where it is wrong.
 };
@@ -85,25 +85,25 @@ struct question_answer {
 [[nodiscard]] std::span<const question_row> question_rows() noexcept;
 
 /// The answers to the open questions, in their order.
-[[nodiscard]] std::vector<question_answer> answers_of(const model& which,
+[[nodiscard]] std::vector<question_answer> answers_of(const model& model,
                                                       std::span<const step_result> results);
 
 // What the steps do.
-void bridge(subject& of, step_result& into);
-void listening(subject& of, step_result& into);
-void identity(subject& of, step_result& into);
-void queries(subject& of, step_result& into);
-void protection(subject& of, step_result& into);
-void frequency(subject& of, step_result& into);
-void sample_rate(subject& of, step_result& into);
-void start_and_stop(subject& of, step_result& into);
-void dtr(subject& of, step_result& into);
-void stream(subject& of, step_result& into);
-void sample_bits(subject& of, step_result& into);
-void ct_information(subject& of, step_result& into);
-void time_packets(subject& of, step_result& into);
-void near_target(subject& of, step_result& into);
-void far_target(subject& of, step_result& into);
-void unplug(subject& of, step_result& into);
+void bridge(tested_lidar& lidar, step_result& result);
+void listening(tested_lidar& lidar, step_result& result);
+void identity(tested_lidar& lidar, step_result& result);
+void queries(tested_lidar& lidar, step_result& result);
+void protection(tested_lidar& lidar, step_result& result);
+void frequency(tested_lidar& lidar, step_result& result);
+void sample_rate(tested_lidar& lidar, step_result& result);
+void start_and_stop(tested_lidar& lidar, step_result& result);
+void dtr(tested_lidar& lidar, step_result& result);
+void stream(tested_lidar& lidar, step_result& result);
+void sample_bits(tested_lidar& lidar, step_result& result);
+void ct_information(tested_lidar& lidar, step_result& result);
+void time_packets(tested_lidar& lidar, step_result& result);
+void near_target(tested_lidar& lidar, step_result& result);
+void far_target(tested_lidar& lidar, step_result& result);
+void lose_and_return(tested_lidar& lidar, step_result& result);
 
 }  // namespace g4_tool::acceptance

@@ -22,12 +22,12 @@
 
 namespace g4lidar::python {
 
-/// Sets `into` to the enumerator whose word `from` is; false if it is another object.
+/// Sets `into` to the enumerator whose word `value` is; false if it is another object.
 template <class Enumeration>
-bool read_word(nanobind::handle from, std::initializer_list<std::string_view> words,
+bool read_word(nanobind::handle value, std::initializer_list<std::string_view> words,
                Enumeration& into) noexcept {
   nanobind::detail::make_caster<std::string_view> text;
-  if (!text.from_python(from, 0, nullptr)) return false;
+  if (!text.from_python(value, 0, nullptr)) return false;
   std::size_t index = 0;
   for (const std::string_view word : words) {
     if (word == text.value) {
@@ -49,8 +49,8 @@ struct path_text {
 template <>
 struct nanobind::detail::type_caster<g4lidar::python::path_text> {
   NB_TYPE_CASTER(g4lidar::python::path_text, const_name("str | os.PathLike[str]"))
-  bool from_python(handle from, std::uint32_t flags, cleanup_list* list) noexcept {
-    const object path = steal(g4lidar::python::in_python([&] { return PyOS_FSPath(from.ptr()); }));
+  bool from_python(handle given, std::uint32_t flags, cleanup_list* list) noexcept {
+    const object path = steal(g4lidar::python::in_python([&] { return PyOS_FSPath(given.ptr()); }));
     make_caster<std::string_view> text;
     if (!path.is_valid() || !text.from_python(path, flags, list)) {
       PyErr_Clear();
@@ -66,18 +66,18 @@ struct nanobind::detail::type_caster<g4lidar::python::path_text> {
 };
 
 /// The words of an enumeration with the values 0, 1 and 2.
-#define G4LIDAR_THREE_WORDS(Enumeration, first_word, second_word, third_word)                \
-  template <>                                                                                \
-  struct nanobind::detail::type_caster<Enumeration> {                                        \
-    NB_TYPE_CASTER(Enumeration, const_name("typing.Literal['" first_word "', '" second_word  \
-                                           "', '" third_word "']"))                          \
-    bool from_python(handle from, std::uint32_t, cleanup_list*) noexcept {                   \
-      return g4lidar::python::read_word(from, {first_word, second_word, third_word}, value); \
-    }                                                                                        \
-    static handle from_cpp(Enumeration from, rv_policy, cleanup_list*) noexcept {            \
-      constexpr std::array<const char*, 3> words{first_word, second_word, third_word};       \
-      return PyUnicode_FromString(words[static_cast<std::size_t>(from)]);                    \
-    }                                                                                        \
+#define G4LIDAR_THREE_WORDS(Enumeration, first_word, second_word, third_word)                 \
+  template <>                                                                                 \
+  struct nanobind::detail::type_caster<Enumeration> {                                         \
+    NB_TYPE_CASTER(Enumeration, const_name("typing.Literal['" first_word "', '" second_word   \
+                                           "', '" third_word "']"))                           \
+    bool from_python(handle given, std::uint32_t, cleanup_list*) noexcept {                   \
+      return g4lidar::python::read_word(given, {first_word, second_word, third_word}, value); \
+    }                                                                                         \
+    static handle from_cpp(Enumeration value, rv_policy, cleanup_list*) noexcept {            \
+      constexpr std::array<const char*, 3> words{first_word, second_word, third_word};        \
+      return PyUnicode_FromString(words[static_cast<std::size_t>(value)]);                    \
+    }                                                                                         \
   }
 
 /// The words of an enumeration with the values 0 and 1.
@@ -85,11 +85,11 @@ struct nanobind::detail::type_caster<g4lidar::python::path_text> {
   template <>                                                                                      \
   struct nanobind::detail::type_caster<Enumeration> {                                              \
     NB_TYPE_CASTER(Enumeration, const_name("typing.Literal['" first_word "', '" second_word "']")) \
-    bool from_python(handle from, std::uint32_t, cleanup_list*) noexcept {                         \
-      return g4lidar::python::read_word(from, {first_word, second_word}, value);                   \
+    bool from_python(handle given, std::uint32_t, cleanup_list*) noexcept {                        \
+      return g4lidar::python::read_word(given, {first_word, second_word}, value);                  \
     }                                                                                              \
-    static handle from_cpp(Enumeration from, rv_policy, cleanup_list*) noexcept {                  \
-      return PyUnicode_FromString(static_cast<int>(from) == 0 ? first_word : second_word);         \
+    static handle from_cpp(Enumeration value, rv_policy, cleanup_list*) noexcept {                 \
+      return PyUnicode_FromString(static_cast<int>(value) == 0 ? first_word : second_word);        \
     }                                                                                              \
   }
 

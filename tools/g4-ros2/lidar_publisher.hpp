@@ -13,18 +13,18 @@
 #include "dds/bus.hpp"
 #include "g4lidar/lidar_service.hpp"
 #include "lidar_diagnostics.hpp"
-#include "options.hpp"
 #include "robot_messages.hpp"
+#include "ros2_options.hpp"
 #include "scan_messages.hpp"
 
 namespace g4_tool {
 
-class lidar_node final : private service_sink {
+class lidar_publisher final : private service_sink {
  public:
   /// `lidars`: one, or those that are merged. `is_first`: of several nodes, the one that publishes /clock. `on` and
   /// `options` outlive it. Throws a failure, and bad_value.
-  lidar_node(dds::bus& on, const ros2_options& options, const std::vector<named_source>& lidars,
-             bool is_first);
+  lidar_publisher(dds::bus& on, const ros2_options& options,
+                  const std::vector<named_source>& lidars, bool is_first);
 
   /// Opens the lidars, once. Throws a failure.
   void start();

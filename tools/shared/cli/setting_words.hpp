@@ -35,11 +35,13 @@ struct setting_change {
 [[nodiscard]] bool is_change(std::string_view word) noexcept;
 
 /// "sample_rate=9k". Throws bad_value, with what is possible with a lidar of this model, or of any if that is null.
-[[nodiscard]] setting_change change_of(const std::string& word, const g4lidar::model* of = nullptr);
+[[nodiscard]] setting_change change_of(const std::string& word,
+                                       const g4lidar::model* model = nullptr);
 
 /// What the device answers; nothing if it cannot be asked for this, or does not answer. Throws a
 /// failure if the device is lost.
-[[nodiscard]] maybe_answer read_setting(g4lidar::lidar& lidar, const g4lidar::setting_info& which);
+[[nodiscard]] maybe_answer read_setting(g4lidar::lidar& lidar,
+                                        const g4lidar::setting_info& setting);
 
 /// "9k", "7.0", "cw", "on"; "unknown" where there is nothing.
 [[nodiscard]] std::string text_of(const maybe_answer& value);

@@ -10,10 +10,10 @@
 #include <utility>
 #include <vector>
 
+#include "enumeration_words.hpp"
 #include "errors.hpp"
 #include "g4lidar/options/option_table.hpp"
 #include "live_lidar.hpp"
-#include "words.hpp"
 
 namespace g4lidar::python {
 
@@ -35,10 +35,10 @@ using setting_types =
 
 // The value of a setting. Raises BadOption for one that its type cannot hold: the lidar refuses what its model does not
 // have.
-[[nodiscard]] answer value_for(const setting_info& which, int wanted);
-[[nodiscard]] answer value_for(const setting_info& which, double wanted);
-[[nodiscard]] inline answer value_for(const setting_info& which, bool wanted) {
-  return *value_of(which, wanted ? 2 : 1);
+[[nodiscard]] answer value_for(const setting_info& setting, int wanted);
+[[nodiscard]] answer value_for(const setting_info& setting, double wanted);
+[[nodiscard]] inline answer value_for(const setting_info& setting, bool wanted) {
+  return *value_of(setting, wanted ? 2 : 1);
 }
 [[nodiscard]] inline answer value_for(const setting_info&, motor_direction wanted) {
   return wanted;
@@ -59,11 +59,11 @@ template <class... Wanted>
 
 /// What is added to each angle, in degrees. Raises NotSupported for a model that has no such offset, and BadOption beyond
 /// a turn; null: the model is not known yet.
-[[nodiscard]] zero_angle zero_angle_from(double deg, const model* which);
+[[nodiscard]] zero_angle zero_angle_from(double deg, const model* model);
 
 /// Sends each of these values; nothing if the lidar refuses one of them.
-void set(live_lidar& on, std::vector<answer> wanted, bool interrupt);
+void set(live_lidar& lidar, std::vector<answer> wanted, bool interrupt);
 /// The settings that can be queried; None where the model does not have one.
-[[nodiscard]] nb::dict settings(live_lidar& on, bool interrupt);
+[[nodiscard]] nb::dict settings(live_lidar& lidar, bool interrupt);
 
 }  // namespace g4lidar::python

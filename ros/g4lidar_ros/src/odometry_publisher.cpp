@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "robot_motion.hpp"
+#include "odometry_publisher.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -40,7 +40,7 @@ geometry_msgs::msg::TransformStamped transform_of(std::int64_t stamp_ns, const s
 
 }  // namespace
 
-void robot_motion::connect(const std::string& frame_id, bool has_odometry) {
+void odometry_publisher::connect(const std::string& frame_id, bool has_odometry) {
   if (has_odometry) {
     if (!topics_.odometry)
       topics_.odometry = std::make_unique<counted_publisher<nav_msgs::msg::Odometry>>(
@@ -71,7 +71,7 @@ void robot_motion::connect(const std::string& frame_id, bool has_odometry) {
   }
 }
 
-void robot_motion::subscribe() {
+void odometry_publisher::subscribe() {
   const auto take = [this](const nav_msgs::msg::Odometry& from) {
     const auto& [place, turn] = std::pair(from.pose.pose.position, from.pose.pose.orientation);
     const auto& [linear, angular] = std::pair(from.twist.twist.linear, from.twist.twist.angular);
@@ -92,11 +92,11 @@ void robot_motion::subscribe() {
       "odom", rclcpp::QoS(100).best_effort(), take, how);
 }
 
-void robot_motion::on_odometry(const g4lidar::stamped_odometry& now, std::int64_t stamp_ns) {
+void odometry_publisher::on_odometry(const g4lidar::stamped_odometry& now, std::int64_t stamp_ns) {
   guard(node_, [&] { publish(now, stamp_ns); });
 }
 
-void robot_motion::on_time(std::size_t /*lidar*/, std::int64_t stamp_ns) {
+void odometry_publisher::on_time(std::size_t /*lidar*/, std::int64_t stamp_ns) {
   constexpr std::int64_t clock_step_ns = 10'000'000;
   guard(node_, [&] {
     if (!topics_.clock || !topics_.clock->is_wanted() ||
@@ -109,33 +109,33 @@ void robot_motion::on_time(std::size_t /*lidar*/, std::int64_t stamp_ns) {
   });
 }
 
-void robot_motion::publish(const g4lidar::stamped_odometry& at, std::int64_t stamp_ns) {
+void odometry_publisher::publish(const g4lidar::stamped_odometry& odometry, std::int64_t stamp_ns) {
   if (topics_.odometry->is_wanted()) {
     auto made = std::make_unique<nav_msgs::msg::Odometry>();
     made->header.stamp = rclcpp::Time(stamp_ns);
     made->header.frame_id = options_.odometry_frame;
     made->child_frame_id = options_.base_frame;
-    made->pose.pose.position.x = at.pose.x_m;
-    made->pose.pose.position.y = at.pose.y_m;
-    set(made->pose.pose.orientation, {at.pose, false});
-    made->twist.twist.linear.x = at.twist.x_m_per_s;
-    made->twist.twist.linear.y = at.twist.y_m_per_s;
-    made->twist.twist.angular.z = at.twist.yaw_rad_per_s;
+    made->pose.pose.position.x = odometry.pose.x_m;
+    made->pose.pose.position.y = odometry.pose.y_m;
+    set(made->pose.pose.orientation, {odometry.pose, false});
+    made->twist.twist.linear.x = odometry.twist.x_m_per_s;
+    made->twist.twist.linear.y = odometry.twist.y_m_per_s;
+    made->twist.twist.angular.z = odometry.twist.yaw_rad_per_s;
     topics_.odometry->publish(std::move(made));
   }
   tf_->sendTransform(
-      transform_of(stamp_ns, options_.odometry_frame, options_.base_frame, {at.pose, false}));
+      transform_of(stamp_ns, options_.odometry_frame, options_.base_frame, {odometry.pose, false}));
 }
 
-void robot_motion::take(g4lidar::odometry_path& into, const g4lidar::scan& whole,
-                        std::int64_t ahead_ns) {
+void odometry_publisher::take(g4lidar::odometry_path& into, const g4lidar::scan& whole,
+                              std::int64_t ahead_ns) {
   guard(node_, [&] {
     if (subscription_) take_subscribed(into, ahead_ns);
     if (buffer_) take_transforms(into, whole, ahead_ns);
   });
 }
 
-void robot_motion::take_subscribed(g4lidar::odometry_path& into, std::int64_t ahead_ns) {
+void odometry_publisher::take_subscribed(g4lidar::odometry_path& into, std::int64_t ahead_ns) {
   const std::lock_guard lock(mutex_);
   for (g4lidar::stamped_odometry each : subscribed_) {
     const bool is_later = each.time_ns > std::exchange(taken_ns_, each.time_ns);
@@ -149,8 +149,8 @@ void robot_motion::take_subscribed(g4lidar::odometry_path& into, std::int64_t ah
   subscribed_.clear();
 }
 
-void robot_motion::take_transforms(g4lidar::odometry_path& into, const g4lidar::scan& whole,
-                                   std::int64_t ahead_ns) {
+void odometry_publisher::take_transforms(g4lidar::odometry_path& into, const g4lidar::scan& whole,
+                                         std::int64_t ahead_ns) {
   const auto newest = into.newest();
   std::int64_t time_ns = whole.time_ns() - tf_step_ns;
   if (newest) time_ns = std::max(time_ns, newest->time_ns + tf_step_ns);

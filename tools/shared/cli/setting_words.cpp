@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "settings.hpp"
+#include "setting_words.hpp"
 
 #include <fmt/format.h>
 
@@ -12,7 +12,7 @@
 #include "g4lidar/core/request.hpp"
 #include "g4lidar/options/lidar_parameters.hpp"
 #include "logger.hpp"
-#include "rows.hpp"
+#include "option_rows.hpp"
 
 namespace g4_tool {
 namespace {
@@ -51,24 +51,24 @@ bool is_change(std::string_view word) noexcept {
   return end != std::string_view::npos && end > 0 && word[end] == '=';
 }
 
-setting_change change_of(const std::string& word, const g4lidar::model* of) {
+setting_change change_of(const std::string& word, const g4lidar::model* model) {
   const std::size_t equals = word.find('=');
   choices<const setting_info*> names;
   for (const setting_info& each : all_settings()) names.emplace_back(each.name, &each);
   const setting_info& which = *choice_of(word.substr(0, equals), names);
   const std::string wanted = word.substr(equals + 1);
-  const auto value = value_in(which, wanted, of);
+  const auto value = value_in(which, wanted, model);
   if (value) return {&which, *value};
-  if (of != nullptr && !has_request(*of, which.change)) {
+  if (model != nullptr && !has_request(*model, which.change)) {
     throw bad_value(
-        fmt::format("{}: {} {} has no such setting", which.name, article_of(*of), of->name));
+        fmt::format("{}: {} {} has no such setting", which.name, article_of(*model), model->name));
   }
   throw bad_value(std::string(value.error().subject()) + did_you_mean(wanted, value_words(which)));
 }
 
-maybe_answer read_setting(g4lidar::lidar& lidar, const setting_info& which) {
-  if (!which.query) return std::nullopt;
-  const auto given = lidar.ask(*which.query);
+maybe_answer read_setting(g4lidar::lidar& lidar, const setting_info& setting) {
+  if (!setting.query) return std::nullopt;
+  const auto given = lidar.ask(*setting.query);
   if (given) return *given;
   if (given.error().is_fatal()) throw failure(given.error());
   logger::verbose(in_tool_words(given.error().message()) + "\n");

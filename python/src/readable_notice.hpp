@@ -10,12 +10,12 @@
 namespace g4lidar::python {
 
 /// Readable from give() until take(). *Any thread.*
-class notice {
+class readable_notice {
  public:
-  notice() = default;
-  notice(const notice&) = delete;
-  notice& operator=(const notice&) = delete;
-  ~notice() { ::close(descriptor_); }
+  readable_notice() = default;
+  readable_notice(const readable_notice&) = delete;
+  readable_notice& operator=(const readable_notice&) = delete;
+  ~readable_notice() { ::close(descriptor_); }
 
   void give() noexcept { static_cast<void>(::eventfd_write(descriptor_, 1)); }
   void take() noexcept {

@@ -3,7 +3,7 @@
 // the core.
 #include "sim/exact.hpp"
 
-#include "settings.hpp"
+#include "command_effects.hpp"
 
 #include <algorithm>
 #include <cstddef>

@@ -12,10 +12,10 @@
 
 #include "cli/common_options.hpp"
 #include "cli/named_sources.hpp"
-#include "cli/settings.hpp"
+#include "cli/setting_words.hpp"
 #include "cli/verbs.hpp"
 #include "g4lidar/message/ros_messages.hpp"
-#include "io/source.hpp"
+#include "io/source_word.hpp"
 
 namespace g4_tool {
 
@@ -42,7 +42,7 @@ struct frame_names {
 enum class announced_form : unsigned char { automatic, none, humble, iron };
 
 /// The network and the quality of service.
-struct delivery {
+struct network_options {
   std::optional<std::uint32_t> domain;  ///< Nothing: ROS_DOMAIN_ID.
   std::string interface;
   bool is_reliable = true;
@@ -61,7 +61,7 @@ struct ros2_options {
   std::string node = "g4lidar";  ///< The name of the node.
   topic_names topics;
   frame_names frames;
-  delivery transport;
+  network_options transport;
   scan_order order = scan_order::angle;
   std::optional<std::uint32_t> bins;  ///< default_bins() of the model.
   bool merges = false;

@@ -23,9 +23,9 @@ inline std::string registry() {
 }
 
 /// The abstract socket of a name: of a link, or of a pseudo-terminal that a simulator serves.
-class claim {
+class name_claim {
  public:
-  explicit claim(std::string_view name) noexcept {
+  explicit name_claim(std::string_view name) noexcept {
     constexpr std::string_view prefix = "g4lidar-sim-";
     address_.sun_family = AF_UNIX;
     char* const begin = std::copy(prefix.begin(), prefix.end(), address_.sun_path + 1);

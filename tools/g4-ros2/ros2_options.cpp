@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "options.hpp"
+#include "ros2_options.hpp"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 #include <map>
 
 #include "cli/logger.hpp"
-#include "cli/rows.hpp"
+#include "cli/option_rows.hpp"
 
 namespace g4_tool {
 namespace {
@@ -73,7 +73,7 @@ option_rows scan_rows(ros2_options& options) {
 }
 
 option_rows network_rows(ros2_options& options) {
-  delivery& transport = options.transport;
+  network_options& transport = options.transport;
   return in_group(
       "Network",
       {value_row("--domain", "N", "ROS 2 domain (ROS_DOMAIN_ID, or 0)", transport.domain,

@@ -18,19 +18,19 @@
 namespace g4_tool::acceptance {
 
 /// *Single thread.*
-class subject {
+class tested_lidar {
  public:
-  subject(connector& connects, const run_options& how);
+  tested_lidar(connector& connects, const run_options& wanted);
 
   /// Opens the connection.
   [[nodiscard]] result<void> open();
   /// Closes it, and opens it again, with attempts for so long.
   [[nodiscard]] bool reopen(std::int64_t wait_ns, bool may_be_cancelled = true);
   /// Where nothing valid comes at the rate of the model: the rate at which a lidar is found, which is used from now on
-  /// and stated in `into`. False if there is none, or the user has given the rate.
-  bool find_baud(step_result& into);
+  /// and stated in `result`. False if there is none, or the user has given the rate.
+  bool find_baud(step_result& result);
   /// The device has sent this: with old firmware it differs from its model.
-  void identify(const device_information& who);
+  void identify(const device_information& information);
   /// Reads samples as the bytes show them, if some devices of the model have such.
   void adapt_layout();
   /// Whether the lidar of this connection is the one of the beginning; another one has settings of its own.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "source.hpp"
+#include "source_word.hpp"
 
 #include <fmt/format.h>
 #include <sys/stat.h>
@@ -169,12 +169,12 @@ void report_candidates(std::span<const g4lidar::model* const> candidates) {
                   candidates.front()->name, model_words(candidates.subspan(1))));
 }
 
-void report_missing_zero(const g4lidar::model& which) {
+void report_missing_zero(const g4lidar::model& model) {
   logger::info(
       fmt::format("the offset of zero of this {} is not known: its answer to command 93 is "
                   "missing, and the angles are those of "
                   "the device; --zero-angle gives it\n",
-                  which.name));
+                  model.name));
 }
 
 void report_contradictions(const recognition& found) {
@@ -199,14 +199,14 @@ void report_contradictions(const g4lidar::lidar& from) {
 void report_model(const recognised_model& found) { report_model(*found.which, found.is_usual()); }
 
 // What all sources get is left out: the speed 1 of programs that show a recording.
-void refuse_options_of_others(const common_options& options, const lidar_options& how) {
+void refuse_options_of_others(const common_options& options, const lidar_options& wanted) {
   constexpr double as_recorded = 1.0;
   lidar_options given = options.expected;
   given.device = options.source;
   given.reconnect = options.on_loss.given.has_value();
-  given.playback = how.playback;
-  given.raw_sample_rate_hz = how.raw_sample_rate_hz;
-  given.counts_times = how.counts_times;
+  given.playback = wanted.playback;
+  given.raw_sample_rate_hz = wanted.raw_sample_rate_hz;
+  given.counts_times = wanted.counts_times;
   if (given.playback.speed == as_recorded) given.playback.speed = lidar_options().playback.speed;
   const auto wrong = problem_with_source(given);
   if (!wrong) return;
@@ -244,26 +244,26 @@ const g4lidar::model* model_of(const common_options& options,
   return value_of(found);
 }
 
-lidar_options options_for(const common_options& options, lidar_options how) {
-  how.device = options.source;
-  how.model = named_model(options);
-  if (options.expected.baud != 0) how.baud = options.expected.baud;
-  how.listen_only = options.expected.listen_only;
-  how.leave_dtr = options.expected.leave_dtr;
-  refuse_options_of_others(options, how);
-  how.zero_angle = options.expected.zero_angle;
-  how.probe_all_ports = options.expected.probe_all_ports;
-  how.insist_on_model = options.expected.insist_on_model;
+lidar_options options_for(const common_options& options, lidar_options wanted) {
+  wanted.device = options.source;
+  wanted.model = named_model(options);
+  if (options.expected.baud != 0) wanted.baud = options.expected.baud;
+  wanted.listen_only = options.expected.listen_only;
+  wanted.leave_dtr = options.expected.leave_dtr;
+  refuse_options_of_others(options, wanted);
+  wanted.zero_angle = options.expected.zero_angle;
+  wanted.probe_all_ports = options.expected.probe_all_ports;
+  wanted.insist_on_model = options.expected.insist_on_model;
   const loss_rule at_loss = options.on_loss.given.value_or(options.on_loss.usual);
-  how.reconnect = at_loss != loss_rule::exit;
+  wanted.reconnect = at_loss != loss_rule::exit;
   // A file that is missing is not waited for.
   if (at_loss == loss_rule::wait && !is_file_name(options.source))
-    how.device_wait = std::chrono::milliseconds::max();
-  if (!how.is_cancelled) how.is_cancelled = [] { return interrupt() != 0; };
-  how = usable_options(std::move(how));
-  if (how.model != nullptr) return how;
+    wanted.device_wait = std::chrono::milliseconds::max();
+  if (!wanted.is_cancelled) wanted.is_cancelled = [] { return interrupt() != 0; };
+  wanted = usable_options(std::move(wanted));
+  if (wanted.model != nullptr) return wanted;
   const bool is_raw = kind_of_source(options.source) == source_kind::raw_bytes;
-  how.wrap = [inner = std::move(how.wrap), is_raw](std::unique_ptr<connector> from) {
+  wanted.wrap = [inner = std::move(wanted.wrap), is_raw](std::unique_ptr<connector> from) {
     const connector_traits behind = from->traits();
     const recognition& found = behind.recognised;
     // Of a contradiction they are part, and later.
@@ -273,7 +273,7 @@ lidar_options options_for(const common_options& options, lidar_options how) {
     if (is_raw && found.model != nullptr) report_model(*found.model, found.by == known_by::samples);
     return inner ? inner(std::move(from)) : result<std::unique_ptr<connector>>(std::move(from));
   };
-  return how;
+  return wanted;
 }
 
 failure failure_of(const common_options& options, const g4lidar::error& why) {

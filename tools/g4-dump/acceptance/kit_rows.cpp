@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The steps and the queries.
-#include "rows.hpp"
+#include "kit_rows.hpp"
 
 #include <algorithm>
 #include <array>
@@ -32,15 +32,17 @@ constexpr std::array all_queries{
     query_row{0x08, "direction_08", 1, unknown_of_g},
 };
 
-bool always(const subject& /*of*/) noexcept { return true; }
-bool may_have_protection(const subject& of) noexcept {
-  return of.is_two_way() && of.row.protection != presence::no;
+bool always(const tested_lidar& /*lidar*/) noexcept { return true; }
+bool may_have_protection(const tested_lidar& lidar) noexcept {
+  return lidar.is_two_way() && lidar.row.protection != presence::no;
 }
-bool sets_frequency(const subject& of) noexcept { return of.row.frequency.max_dhz != 0; }
-bool sets_rate(const subject& of) noexcept { return of.row.rates.is_settable; }
-bool takes_commands(const subject& of) noexcept { return of.is_two_way(); }
-bool has_scan(const subject& of) noexcept { return of.surveyed && of.surveyed->counts.packets > 0; }
-bool has_target(const subject& of) noexcept { return of.target_degree.has_value(); }
+bool sets_frequency(const tested_lidar& lidar) noexcept { return lidar.row.frequency.max_dhz != 0; }
+bool sets_rate(const tested_lidar& lidar) noexcept { return lidar.row.rates.is_settable; }
+bool takes_commands(const tested_lidar& lidar) noexcept { return lidar.is_two_way(); }
+bool has_scan(const tested_lidar& lidar) noexcept {
+  return lidar.surveyed && lidar.surveyed->counts.packets > 0;
+}
+bool has_target(const tested_lidar& lidar) noexcept { return lidar.target_degree.has_value(); }
 
 constexpr std::string_view no_scan = "There were no packets.";
 
@@ -65,7 +67,7 @@ constexpr std::array steps{
     step_row{step::time_packets, "time_packets", has_scan, no_scan, time_packets},
     step_row{step::near_target, "near_target", always, "", near_target},
     step_row{step::far_target, "far_target", has_target, "There was no near target.", far_target},
-    step_row{step::unplug, "unplug", always, "", unplug, setting::frequency},
+    step_row{step::unplug, "unplug", always, "", lose_and_return, setting::frequency},
 };
 
 static_assert(steps.size() == step_count && std::ranges::is_sorted(steps, {}, &step_row::of));
@@ -75,6 +77,8 @@ static_assert(steps.size() == step_count && std::ranges::is_sorted(steps, {}, &s
 std::span<const step_row> step_rows() noexcept { return steps; }
 std::span<const query_row> query_rows() noexcept { return all_queries; }
 
-std::string_view name_of(step of) noexcept { return steps.at(static_cast<std::size_t>(of)).name; }
+std::string_view name_of(step step) noexcept {
+  return steps.at(static_cast<std::size_t>(step)).name;
+}
 
 }  // namespace g4_tool::acceptance

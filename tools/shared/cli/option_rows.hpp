@@ -133,29 +133,33 @@ template <class Target, class Value>
 }
 
 /// The row of an option of the table of the library, with its name, value and text.
-[[nodiscard]] option_row row_of(const g4lidar::parameter& of,
+[[nodiscard]] option_row row_of(const g4lidar::parameter& parameter,
                                 std::function<void(const std::string&)> take);
 
 // How a word is stored, as the option of the table states. Each throws bad_value.
-void store(g4lidar::lidar_options& into, const g4lidar::parameter& of, const std::string& word);
-void store(g4lidar::filter_settings& into, const g4lidar::parameter& of, const std::string& word);
+void store(g4lidar::lidar_options& into, const g4lidar::parameter& parameter,
+           const std::string& word);
+void store(g4lidar::filter_settings& into, const g4lidar::parameter& parameter,
+           const std::string& word);
 /// The number of the word among those of the option.
-[[nodiscard]] std::size_t word_number(const g4lidar::parameter& of, const std::string& word);
+[[nodiscard]] std::size_t word_number(const g4lidar::parameter& parameter, const std::string& word);
 template <class Target>
-void store(Target& into, const g4lidar::parameter& of, const std::string& word) {
+void store(Target& into, const g4lidar::parameter& parameter, const std::string& word) {
   if constexpr (std::is_same_v<Target, bool>)
     into = true;
   else if constexpr (std::is_enum_v<Target>)
-    into = static_cast<Target>(word_number(of, word));
+    into = static_cast<Target>(word_number(parameter, word));
   else if constexpr (std::is_arithmetic_v<Target>)
-    into = number_of(word, static_cast<Target>(of.range[0]), static_cast<Target>(of.range[1]));
+    into = number_of(word, static_cast<Target>(parameter.range[0]),
+                     static_cast<Target>(parameter.range[1]));
   else
     into = word;
 }
 template <class Value>
-void store(std::optional<Value>& into, const g4lidar::parameter& of, const std::string& word) {
+void store(std::optional<Value>& into, const g4lidar::parameter& parameter,
+           const std::string& word) {
   Value made{};
-  store(made, of, word);
+  store(made, parameter, word);
   into = made;
 }
 
