@@ -28,25 +28,25 @@ struct corner {
 /// caller's memory.
 using polygon = std::span<const corner>;
 
-/// Whether `at` is inside of `outline`. *Pure.* By the even-odd rule: what a self-crossing outline
+/// Whether `position` is inside of `outline`. *Pure.* By the even-odd rule: what a self-crossing outline
 /// goes round twice is outside. Of the edges, those at the left and at the bottom are inside (x to
 /// the right, y up), those at the right and at the top are outside: of two polygons with a common
 /// edge, exactly one contains a place on it. An outline with fewer than three corners, or with all
 /// corners on one line, contains nothing; so does every outline for a coordinate that is NaN.
-[[nodiscard]] constexpr bool is_inside(corner at, polygon outline) noexcept {
+[[nodiscard]] constexpr bool is_inside(corner position, polygon outline) noexcept {
   bool inside = false;
   for (std::size_t i = 0; i < outline.size(); ++i) {
     const corner& a = outline[i];
     const corner& b = outline[i + 1 == outline.size() ? 0 : i + 1];
-    const bool a_is_above = a.y_m > at.y_m;
-    if (a_is_above == (b.y_m > at.y_m)) continue;
+    const bool a_is_above = a.y_m > position.y_m;
+    if (a_is_above == (b.y_m > position.y_m)) continue;
     // The edge always in the same sense, so that it rounds in the same way for both its polygons.
     const corner& low = a_is_above ? b : a;
     const corner& high = a_is_above ? a : b;
     const double across =
-        static_cast<double>(high.x_m - low.x_m) * static_cast<double>(at.y_m - low.y_m);
+        static_cast<double>(high.x_m - low.x_m) * static_cast<double>(position.y_m - low.y_m);
     const double along =
-        static_cast<double>(at.x_m - low.x_m) * static_cast<double>(high.y_m - low.y_m);
+        static_cast<double>(position.x_m - low.x_m) * static_cast<double>(high.y_m - low.y_m);
     if (along < across) inside = !inside;  // the edge is to the right of `at`
   }
   return inside;

@@ -285,7 +285,7 @@ class G4LIDAR_API scan_loop {
 
   /// Waits at most `slice` for the next scan; valid as that of lidar::wait_scan(). Nothing: none has come, and the loop
   /// goes on. Errors, which end the loop: as lidar::wait_scan(). After cancelled the next call continues the same wait.
-  [[nodiscard]] result<std::optional<scan>> wait(lidar& from, lidar::milliseconds slice);
+  [[nodiscard]] result<std::optional<scan>> wait(lidar& source, lidar::milliseconds slice);
   /// How long from now a wait for the next scan can last; milliseconds::max() without limit.
   [[nodiscard]] lidar::milliseconds left(const lidar& from) const noexcept;
 

@@ -85,8 +85,8 @@ inline constexpr std::array<doubt, 6> doubts{{
   short_text text;
   text.add("scan ").add(s.revolution).add(": ").add(s.points.size()).add(" points");
   std::string_view before = ", ";
-  const auto flag = [&](scan_flags which, std::string_view name) {
-    if (s.has(which)) text.add(std::exchange(before, " ")).add(name);
+  const auto flag = [&](scan_flags flags, std::string_view name) {
+    if (s.has(flags)) text.add(std::exchange(before, " ")).add(name);
   };
   flag(scan_flags::start_missing, "start_missing");
   flag(scan_flags::end_missing, "end_missing");

@@ -63,16 +63,16 @@ class reply_watch {
 class zero_offset {
  public:
   /// Who knows it, the most reliable last.
-  enum class known_by : std::uint8_t {
+  enum class stated_by : std::uint8_t {
     device,     ///< The lidar has answered 93.
     recording,  ///< It was used for the points that were recorded.
     user,
   };
   /// Uses it, if nobody more reliable knows another one.
-  constexpr void set(zero_angle known, known_by how) noexcept {
-    if (how < how_) return;
+  constexpr void set(zero_angle known, stated_by authority) noexcept {
+    if (authority < how_) return;
     angle_ = known;
-    how_ = how;
+    how_ = authority;
   }
   /// Nothing as long as it is not known; then no angle is changed.
   [[nodiscard]] constexpr const std::optional<zero_angle>& angle() const noexcept { return angle_; }
@@ -91,7 +91,7 @@ class zero_offset {
 
  private:
   std::optional<zero_angle> angle_;
-  known_by how_ = known_by::device;
+  stated_by how_ = stated_by::device;
 };
 
 }  // namespace g4lidar

@@ -237,9 +237,9 @@ struct diagnostic_options {
 [[nodiscard]] G4LIDAR_API std::vector<stage_report> diagnose(
     std::unique_ptr<transport> opened, const diagnostic_options& options = {});
 
-/// The same for the transports of `from`. If it fails to connect, the first stages report that.
+/// The same for the transports of `connector`. If it fails to connect, the first stages report that.
 [[nodiscard]] G4LIDAR_API std::vector<stage_report> diagnose(
-    connector& from, const diagnostic_options& options = {});
+    connector& connector, const diagnostic_options& options = {});
 
 /// The status of a stage: warn and fail become warn and error, skipped becomes ok with its remark. Its
 /// evidence is in `values`, the name of each diagnosis too. Allocates.

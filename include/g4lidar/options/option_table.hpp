@@ -59,24 +59,25 @@ struct setting_info {
 [[nodiscard]] G4LIDAR_API const setting_info* setting_of(const answer& value) noexcept;
 /// The value with a number, which one of the models at least has; nothing if none has it. *Pure.* A lidar
 /// refuses what its own model does not have.
-[[nodiscard]] G4LIDAR_API std::optional<answer> value_of(const setting_info& of,
+[[nodiscard]] G4LIDAR_API std::optional<answer> value_of(const setting_info& setting,
                                                          std::int32_t number) noexcept;
-/// The value that `text` states: "9k" or "9000", "7.5", "cw", "on". `which` has it, or one of the models at least where
+/// The value that `text` states: "9k" or "9000", "7.5", "cw", "on". `model` has it, or one of the models at least where
 /// that is null. *Allocates.* Fails with bad_option: subject() has the name of the setting, and the values that are
 /// possible, with their unit.
-[[nodiscard]] G4LIDAR_API result<answer> value_in(const setting_info& of, std::string_view text,
-                                                  const model* which = nullptr);
+[[nodiscard]] G4LIDAR_API result<answer> value_in(const setting_info& setting,
+                                                  std::string_view text,
+                                                  const model* model = nullptr);
 /// The row of setting_info::values with this value; null if there is none. *Pure.*
 [[nodiscard]] G4LIDAR_API const setting_value* find_value(const answer& value) noexcept;
 /// The number of a value; nothing if it is of no setting, or none of its values. *Pure.*
 [[nodiscard]] G4LIDAR_API std::optional<std::int32_t> number_of(const answer& value) noexcept;
 /// The request that sets a value of a setting; of anything else, one that a session refuses. *Pure.*
 [[nodiscard]] G4LIDAR_API request change_to(const answer& value) noexcept;
-/// How the speed of lidars like `which` is set without commands: "a voltage or PWM at its pin M_SCTR; ..."; empty where
+/// How the speed of lidars like `model` is set without commands: "a voltage or PWM at its pin M_SCTR; ..."; empty where
 /// a command sets it. *Allocates.*
-[[nodiscard]] G4LIDAR_API std::string speed_without_commands(const model& which);
+[[nodiscard]] G4LIDAR_API std::string speed_without_commands(const model& model);
 /// What commands set, and how the speed is set without: "commands set nothing; its speed: ...". *Allocates.*
-[[nodiscard]] G4LIDAR_API std::string ways_to_set(const model& which);
+[[nodiscard]] G4LIDAR_API std::string ways_to_set(const model& model);
 
 /// What is known about a model, as text: {"baud", "115200"}.
 struct model_fact {
@@ -84,7 +85,7 @@ struct model_fact {
   std::string text;
 };
 /// Number, rates, frequency, range, samples, the direction of 0, commands: the row of docs/models.md. *Allocates.*
-[[nodiscard]] G4LIDAR_API std::vector<model_fact> facts_of(const model& which);
+[[nodiscard]] G4LIDAR_API std::vector<model_fact> facts_of(const model& model);
 /// For status messages: model, candidates, known_by; number and baud where they are known; and contradictions where
 /// there are some. Empty where no model is known. *Allocates.*
 [[nodiscard]] G4LIDAR_API std::vector<model_fact> facts_of(const recognition& what);

@@ -64,11 +64,11 @@ enum class direction : std::uint8_t { from_device, to_device };
 class payload_digest {
  public:
   /// Adds bytes of that direction.
-  constexpr void add(direction way, bytes data) noexcept {
+  constexpr void add(direction direction, bytes data) noexcept {
     if (data.empty()) return;
-    if (is_first_ || way != way_) mix(0x100U + static_cast<unsigned>(way));
+    if (is_first_ || direction != way_) mix(0x100U + static_cast<unsigned>(direction));
     is_first_ = false;
-    way_ = way;
+    way_ = direction;
     for (const std::uint8_t byte : data) mix(byte);
   }
   /// The digest of everything so far.

@@ -159,8 +159,8 @@ G4LIDAR_API void put_recorded_bytes(bytes data, std::int64_t time_ns,
 /// header the answer to command 93. *Single thread, allocates.*
 class G4LIDAR_API raw_copy {
  public:
-  /// Of a lidar like `which`, valid as long as this; `who`: what is known of it before the first bytes.
-  explicit raw_copy(const model& which, const device_information& who = {});
+  /// Of a lidar like `model`, valid as long as this; `information`: what is known of it before the first bytes.
+  explicit raw_copy(const model& model, const device_information& information = {});
 
   /// Whether the answers before a part matter for reading it, so that they must be passed, too.
   [[nodiscard]] bool needs_begin() const noexcept {
@@ -174,7 +174,7 @@ class G4LIDAR_API raw_copy {
 
  private:
   /// What is known of the lidar by its bytes.
-  struct knowledge {
+  struct known_lidar {
     const model* like;
     device_information who{};
     reply_watch replies{};
@@ -190,8 +190,8 @@ class G4LIDAR_API raw_copy {
 
   const model* which_;
   stream_parser parser_;
-  knowledge source_;
-  knowledge reader_;
+  known_lidar source_;
+  known_lidar reader_;
   bool begins_within_ = false;  // there is something before the first bytes that are copied
   bool has_begun_ = false;
 };

@@ -104,7 +104,7 @@ class G4LIDAR_API scene_caster {
   struct way_of_beam;
 
   [[nodiscard]] G4LIDAR_HIDDEN std::optional<sighting> cast_at_walls(
-      double first_level_deg, const way_of_beam& way) noexcept;
+      double first_level_deg, const way_of_beam& beam) noexcept;
 
   beam_shape shape_;
   std::vector<path_point> path_;
