@@ -105,9 +105,7 @@ void bind_background(nb::module_& module, nb::class_<live_lidar>& bound) {
       "waits without limit, and ends at the end of a file and after stop().");
   made.def(
           "next_scan",
-          [](reading_thread& thread, double timeout) {
-            return thread.next_scan(in_milliseconds(timeout));
-          },
+          [](reading_thread& t, double timeout) { return t.next_scan(in_milliseconds(timeout)); },
           "timeout"_a = 2.0, nb::sig("def next_scan(self, timeout: float = 2.0) -> Scan"),
           "The oldest scan that was not taken yet; the last four are kept, older ones are counted "
           "in "

@@ -111,8 +111,7 @@ void recording_writer::file_writer::event(const recorded_event& what) noexcept {
     return;
   }
   if (what.what == recorded_event::kind::begun) place().keep();
-  const bool is_state = what.what == recorded_event::kind::state;
-  if (!is_state) {  // each chunk begins with one, of the state before
+  if (what.what != recorded_event::kind::state) {  // each chunk begins with one
     put(channel_id::events, what.time_ns, 0,
         [&](mcap::record_text& out) { mcap::put_event(out, what, wall_.ahead_ns()); });
   }
@@ -268,8 +267,8 @@ result<void> recording_writer::file_writer::add_transform() {
   const auto begin_ns = static_cast<std::int64_t>(chunk_.first_ns());
   mcap::open_chunk first;
   channels_.put_channels(first.text());
-  first.begin_message(channel_id::tf_static, sequences_[mcap::index_of(channel_id::tf_static)]++,
-                      begin_ns);
+  constexpr auto id = channel_id::tf_static;
+  first.begin_message(id, sequences_[mcap::index_of(id)]++, begin_ns);
   put_tf_message({.stamp_ns = begin_ns,
                   .frame_id = options_.robot_frame_id,
                   .child_frame_id = options_.frame_id,
