@@ -78,7 +78,9 @@ std::vector<stage_report> examine(const std::variant<path_text, simulator*>& dev
     return calls.raised.has_value();
   };
   if (on_stage)
-    how.on_stage = [&](const stage_report& report) { calls.call([&] { in_python([&] { (*on_stage)(report); }); }); };
+    how.on_stage = [&](const stage_report& report) {
+      calls.call([&] { in_python([&] { (*on_stage)(report); }); });
+    };
   std::vector<stage_report> found;
   const auto* given = std::get_if<simulator*>(&device);
   if (given != nullptr && (*given)->is_virtual()) {

@@ -7,9 +7,9 @@
 #include <cstddef>
 
 #include "cli/logger.hpp"
+#include "cli/setting_words.hpp"
 #include "g4lidar/core/request.hpp"
 #include "g4lidar/options/option_table.hpp"
-#include "cli/setting_words.hpp"
 #include "g4lidar/version.hpp"
 
 namespace g4_tool {

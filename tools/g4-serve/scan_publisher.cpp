@@ -10,8 +10,8 @@
 
 #include "cli/exit_code.hpp"
 #include "cli/logger.hpp"
-#include "g4lidar/diagnostics/diagnosis.hpp"
 #include "cli/setting_words.hpp"
+#include "g4lidar/diagnostics/diagnosis.hpp"
 #include "g4lidar/message/ros_messages.hpp"
 #include "io/service_source.hpp"
 

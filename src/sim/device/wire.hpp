@@ -7,8 +7,8 @@
 #include <cstdint>
 #include <optional>
 
-#include "g4lidar/sim/device.hpp"
 #include "command_effects.hpp"
+#include "g4lidar/sim/device.hpp"
 #include "g4lidar/sim/scanner.hpp"
 #include "ring.hpp"
 

@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "cli/exit_code.hpp"
-#include "g4lidar/core/request.hpp"
 #include "cli/setting_words.hpp"
+#include "g4lidar/core/request.hpp"
 #include "g4lidar/lidar_options.hpp"
 #include "g4lidar/recording/reader.hpp"
 #include "g4lidar/transport/source.hpp"

@@ -9,10 +9,10 @@
 
 #include "cli/exit_code.hpp"
 #include "cli/logger.hpp"
+#include "cli/setting_words.hpp"
 #include "g4lidar/core/request.hpp"
 #include "g4lidar/options/lidar_parameters.hpp"
 #include "g4lidar/transport/source.hpp"
-#include "cli/setting_words.hpp"
 #include "io/command_source.hpp"
 #include "io/interrupt.hpp"
 #include "io/output.hpp"

@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "cli/logger.hpp"
-#include "g4lidar/transport/source.hpp"
 #include "cli/option_rows.hpp"
+#include "g4lidar/transport/source.hpp"
 #include "input.hpp"
 #include "output.hpp"
 #include "shape_files.hpp"
