@@ -283,6 +283,31 @@ TEST_F(Convert, FilesWithoutUsableData_AreRefused) {
   expect_refused({path("text.bin"), path("out.csv"), "--from-format", "mcap"}, 10, "text.bin");
 }
 
+TEST_F(Convert, APartThatBeginsAfterTheEnd_ReplacesNothing) {
+  raw("3");
+  convert("raw.bin", "walk.mcap");
+  convert("raw.bin", "a.csv");
+  for (const char* const in : {"raw.bin", "walk.mcap", "a.csv"}) {
+    for (const char* const out : {"b.csv", "b.npy", "b.bin", "b.mcap"}) {
+      if (in == std::string("a.csv") && out != std::string("b.csv")) continue;
+      cli::write_file(path(out), "good");
+      const outcome done = run({"convert", path(in), path(out), "--force", "--from", "99s"});
+      EXPECT_EQ(done.code, 10) << in << out << done.err;
+      EXPECT_THAT(done.err, HasSubstr("from that time on")) << in << out;
+      EXPECT_EQ(text(out), "good") << in << out;
+    }
+  }
+}
+
+TEST_F(Convert, ARecordingThatIsCutBeforeItsPackets_NamesNoModel) {
+  cli::record_in_virtual_time(path("walk.mcap"), 10);
+  cli::write_file(path("cut.mcap"), text("walk.mcap").substr(0, 16'000));
+  expect_refused({path("cut.mcap"), path("b.mcap")}, 10, "there is no whole packet in ");
+  const outcome shown = run({"view", "--once", path("cut.mcap")});
+  EXPECT_EQ(shown.code, 10);
+  EXPECT_THAT(shown.err, HasSubstr("there is no whole packet in "));
+}
+
 TEST_F(Convert, LongFile_NeedsNoMoreMemoryThanAShortOne) {
   const std::string block = cli::zero(0) + cli::turn();
   cli::write_repeated(path("short.bin"), block, 1'000'000);

@@ -189,6 +189,12 @@ TEST_F(Record, FullDisk_EndsItAndKeepsWrittenData) {
   EXPECT_GT(points_of(path("walk.mcap")).size(), 1000U);
 }
 
+TEST_F(Record, ADeviceNeedsNoForce) {
+  const outcome done = run({"record", "sim:", "-n", "2", "-o", "/dev/null"});
+  EXPECT_EQ(done.code, 0) << done.err;
+  EXPECT_TRUE(std::filesystem::is_character_file("/dev/null"));
+}
+
 TEST_F(Record, DiskThatWasFullBefore_LeavesNoFileAndPromisesNone) {
   rlimit before{};
   ::getrlimit(RLIMIT_FSIZE, &before);

@@ -113,6 +113,16 @@ TEST_F(Domain, AFileOfConfigThatIsNotToml_IsExplained) {
   }
 }
 
+TEST_F(Domain, AFileOfConfigThatCannotBeRead_IsNoEmptyOne) {
+  for (const auto& [file, why] :
+       {std::pair{"/proc/self/mem", "--config: the file cannot be read"},
+        std::pair{"/dev/zero", "--config: the file is longer than 1 MB"}}) {
+    const cli::outcome end = cli::program({"sim:", "-d", "1s", "--config", file}).wait();
+    EXPECT_EQ(end.code, 2) << file;
+    EXPECT_THAT(end.err, HasSubstr(why));
+  }
+}
+
 TEST_F(Domain, WordsThatAreAlmostRight_GetASuggestion) {
   cli::write_file(path("options"), "gird = 360\n");
   const std::vector<std::pair<std::vector<std::string>, std::string>> refused{

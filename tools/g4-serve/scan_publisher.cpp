@@ -174,6 +174,8 @@ void scan_publisher::on_state(std::size_t lidar, reader_state state,
   logger::verbose(text + '\n');
   if (state == reader_state::opening)
     logger::info(fmt::format("{}{} Trying again.\n", prefix_of(here.name()), text));
+  else if (state == reader_state::ended && lidars_.size() > 1)  // the others go on
+    logger::info(prefix_of(here.name()) + text + '\n');
 }
 
 void scan_publisher::on_values(std::size_t lidar, const std::string& /*refused*/) {

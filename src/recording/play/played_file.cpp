@@ -35,7 +35,8 @@ std::int64_t begin_of(const item_source& items, std::int64_t from_ns) noexcept {
 
 std::optional<error> problem_with(const playback_options& options) noexcept {
   if (!is_speed(options.speed)) return bad("speed: 0, or 0.000001 to 1000");
-  if (options.from_ns >= options.to_ns) return bad("range: from before to");
+  if (options.from_ns >= options.to_ns)
+    return bad("the end of the range (--to) is not after its begin (--from)");
   return std::nullopt;
 }
 

@@ -51,6 +51,7 @@ std::span<const point> shaping_writer::in_range(std::span<const point> points) {
                         [&](const point& p) { return way_ns(first_ns, p.time_ns) >= since_ns; });
   };
   const auto begin = find(points.begin(), options_.from_ns);
+  is_before_range_ = is_before_range_ && begin == points.end();
   const auto end = find(begin, options_.to_ns);
   done_ = end != points.end();
   return {begin, end};

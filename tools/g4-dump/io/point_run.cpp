@@ -40,7 +40,8 @@ class point_run {
       report(source);
       throw;
     }
-    const bool has_packets = counts_of(source).stream.packets > 0;
+    const bool has_packets =
+        counts_of(source).stream.packets > 0 && !to_.writer().is_before_range();
     if (has_packets || is_live()) to_.commit();
     report(source);
     if (!has_packets && !is_live() && interrupt() == 0 && !to_.out().is_closed())
@@ -113,13 +114,10 @@ class point_run {
 
   [[nodiscard]] failure why_nothing(opened_source& source) const {
     const lidar_counts counts = counts_of(source);
-    if (is_raw())
+    if (is_raw() && counts.stream.packets == 0)
       return without_packets(counts.stream, counts.bytes, source.beginning(),
                              title_of_input(common_.source));
-    return {exit_code::bad_file,
-            "there is no whole packet in " + in_quotes(common_.source) +
-                (options_.source.playback.from_ns > 0 ? " from that time on." : ".") +
-                " g4-dump packets shows what it holds; or give another file."};
+    return no_packet_in(common_.source, options_.source.playback.from_ns > 0);
   }
 
   const point_options& options_;

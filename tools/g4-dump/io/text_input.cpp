@@ -93,6 +93,8 @@ int convert_text(const point_options& options, text_source form, g4lidar::frame 
             common);
   if (!to.writer().is_done()) way.finish();
   report_text(way, from.title(), which);
+  if (to.writer().is_before_range() && way.points() > 0)
+    throw failure(exit_code::bad_file, from.title() + " holds no point from that time on.");
   if (way.points() > 0) to.commit();
   to.report();
   return exit_code_now();

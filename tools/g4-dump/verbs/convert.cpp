@@ -171,8 +171,8 @@ void write_bytes(output& out, const std::vector<std::uint8_t>& data) {
   out.write({reinterpret_cast<const char*>(data.data()), data.size()});
 }
 
-/// Writes the bytes that the lidar sent.
-void copy_recording(const convert_options& options, output& out) {
+/// Writes the bytes that the lidar sent. Returns their number.
+std::uint64_t copy_recording(const convert_options& options, output& out) {
   const std::string path = path_of_source(options.in());
   const std::int64_t from_ns = options.range().from_ns;
   const std::int64_t to_ns = options.range().to_ns;
@@ -192,10 +192,11 @@ void copy_recording(const convert_options& options, output& out) {
       read_items(path, {.from_ns = copy.needs_begin() ? 0 : from_ns, .to_ns = to_ns}, take);
   logger::info(
       fmt::format("{} from the lidar\n{}", counted(count, "byte"), describe(reader.damage())));
+  return count;
 }
 
-/// Writes a part of raw bytes; their times are counted.
-void copy_bytes(const convert_options& options, output& out) {
+/// Writes a part of raw bytes; their times are counted. Returns the number of those that were wanted.
+std::uint64_t copy_bytes(const convert_options& options, output& out) {
   const g4lidar::model* const named = model_of(*options.points.common);
   const auto from = value_of(open_raw_bytes(
       path_of_source(options.in()), options.points.source.raw_sample_rate_hz, {}, {}, named));
@@ -205,6 +206,7 @@ void copy_bytes(const convert_options& options, output& out) {
   const auto opened = value_of(from->connect());
   std::array<std::uint8_t, 32'768> memory;
   std::vector<std::uint8_t> copied;
+  std::uint64_t count = 0;
   while (interrupt() == 0 && !out.is_closed()) {
     const auto got = opened->read(memory, opened->now_ns() + 50'000'000);
     if (!got && got.error().code() == g4lidar::problem::end_of_input) break;
@@ -212,10 +214,12 @@ void copy_bytes(const convert_options& options, output& out) {
     const std::int64_t since_ns = got->arrival_ns - begin_ns;
     if (since_ns >= options.range().to_ns) break;
     copied.clear();
-    copy.received(g4lidar::bytes(memory).first(got->count), since_ns >= options.range().from_ns,
-                  copied);
+    const bool is_wanted = since_ns >= options.range().from_ns;
+    if (is_wanted) count += got->count;
+    copy.received(g4lidar::bytes(memory).first(got->count), is_wanted, copied);
     write_bytes(out, copied);
   }
+  return count;
 }
 
 int to_bytes(const convert_options& options, file_form form) {
@@ -223,16 +227,20 @@ int to_bytes(const convert_options& options, file_form form) {
   if (out.is_terminal()) {
     throw failure(exit_code::usage, "raw bytes are not for a terminal. Give a file as OUT.");
   }
-  form == file_form::recording ? copy_recording(options, out) : copy_bytes(options, out);
+  const std::uint64_t count =
+      form == file_form::recording ? copy_recording(options, out) : copy_bytes(options, out);
+  if (count == 0 && options.range().from_ns > 0 && interrupt() == 0)
+    throw no_packet_in(options.in(), true);
   out.commit();
   return exit_code_now();
 }
 
-[[noreturn]] void refuse_without_packets(const convert_options& options,
-                                         const recorded_result& result) {
-  const std::string path = path_of_source(options.in());
-  throw without_packets(result.lidar.stream, result.lidar.bytes, beginning_of(path),
-                        path == "-" ? "standard input" : in_quotes(path));
+failure why_empty(const convert_options& options, const recorded_result& result) {
+  const bool is_from_a_time = options.range().from_ns > 0;
+  if (is_from_a_time || kind_of_source(options.in()) == source_kind::recording)
+    return no_packet_in(options.in(), is_from_a_time);
+  return without_packets(result.lidar.stream, result.lidar.bytes,
+                         beginning_of(path_of_source(options.in())), title_of_input(options.in()));
 }
 
 int to_recording(const convert_options& options) {
@@ -246,7 +254,7 @@ int to_recording(const convert_options& options) {
   job.is_kept = false;
   job.title = options.out();
   const recorded_result result = record(job);
-  if (result.lidar.stream.packets == 0 && interrupt() == 0) refuse_without_packets(options, result);
+  if (result.lidar.stream.packets == 0 && interrupt() == 0) throw why_empty(options, result);
   out.commit();
   report_counts(result.lidar);
   const std::string path = path_of_source(options.in());

@@ -106,6 +106,10 @@ class viewer {
     update();
     service_->stop();
     if (const auto why = failure_of_all()) throw failure(*why);
+    for (std::size_t i = 0; i < options_.size(); ++i) {
+      if (const auto why = final_failure_of(options_[i], *service_, i))
+        logger::info(std::string(why->what()) + '\n');
+    }
     if (interrupt() != 0) return exit_code_now();
     if (scan_.view().empty()) throw failure(exit_code::lost, "no revolution has come.");
     const canvas shown = picture(job_.columns, job_.rows);

@@ -49,7 +49,14 @@ class help_formatter final : public CLI::Formatter {
 /// Reads the file of --config. A flag that is false there counts as not given.
 class config_reader final : public CLI::ConfigBase {
   std::vector<CLI::ConfigItem> from_config(std::istream& in) const override {
-    std::vector<CLI::ConfigItem> lines = CLI::ConfigBase::from_config(in);
+    constexpr std::size_t most = 1'000'000;
+    std::string text(most + 1, '\0');
+    in.read(text.data(), static_cast<std::streamsize>(text.size()));
+    text.resize(static_cast<std::size_t>(in.gcount()));
+    if (in.bad()) throw CLI::FileError("--config: the file cannot be read");
+    if (text.size() > most) throw CLI::FileError("--config: the file is longer than 1 MB");
+    std::istringstream whole(text);
+    std::vector<CLI::ConfigItem> lines = CLI::ConfigBase::from_config(whole);
     std::erase_if(lines, [](const CLI::ConfigItem& line) {
       return line.inputs == std::vector<std::string>{"false"};
     });
@@ -273,6 +280,7 @@ void describe(CLI::App& app, const program& ours, const std::vector<verb>& verbs
                                    G4LIDAR_VERSION_MINOR, G4LIDAR_VERSION_PATCH),
                        "Print the version and exit");
   app.fallthrough();
+  app.require_subcommand(0, 1);  // a further one is an argument
   app.option_defaults()->disable_flag_override();
   app.footer(verbs.size() == 1 ? "\nThe default SOURCE is the only lidar. Other sources:\n" +
                                      source_list() + "\n" + footer_of(verbs.front())

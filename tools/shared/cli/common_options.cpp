@@ -111,6 +111,7 @@ option_rows direction_rows(common_options& options) {
   option_rows rows = rows_of("Filters", {"fov", "ignore"}, into);
   rows.back().take = [&into](const std::string& word) {
     filter_settings more;
+    if (word.empty()) throw bad_value("the value is empty; give directions: 30:40");
     store(more, *find_parameter("ignore"), word);
     into.ignored.insert(into.ignored.end(), more.ignored.begin(), more.ignored.end());
   };

@@ -246,6 +246,13 @@ failure not_packets(std::string_view found) {
                       found)};
 }
 
+failure no_packet_in(const std::string& source, bool is_from_a_time) {
+  return {exit_code::bad_file,
+          fmt::format("there is no whole packet in {}{} g4-dump packets shows what it holds; or "
+                      "give another file.",
+                      in_quotes(source), is_from_a_time ? " from that time on." : ".")};
+}
+
 failure without_packets(const stream_counts& counts, std::uint64_t bytes,
                         std::span<const std::uint8_t> beginning, const std::string& title) {
   const auto bad = [](const std::string& why) { return failure(exit_code::bad_file, why); };

@@ -103,6 +103,9 @@ g4lidar::recording_reader read_items(
 /// The failure of text or of the frames of another maker, of which `found` are sentences.
 [[nodiscard]] failure not_packets(std::string_view found);
 
+/// The failure of a recording, or of a part that begins after its end, without a packet.
+[[nodiscard]] failure no_packet_in(const std::string& source, bool is_from_a_time);
+
 /// The failure of an input whose `bytes` bytes, which begin with `beginning`, contain no packet: why, and what to do.
 [[nodiscard]] failure without_packets(const g4lidar::stream_counts& counts, std::uint64_t bytes,
                                       std::span<const std::uint8_t> beginning,

@@ -40,6 +40,8 @@ std::optional<failure> failure_of(const common_options& options, const std::opti
   if (*why != problem::end_of_input || !names_file(options.source))
     return failure_of(options, *why);
   if (counts.stream.packets > 0) return std::nullopt;
+  if (kind_of_source(options.source) == source_kind::recording)
+    return no_packet_in(options.source, false);
   std::vector<std::uint8_t> beginning;
   try {
     beginning = beginning_of(path_of_source(options.source));
