@@ -148,6 +148,7 @@ TEST_F(Failure, WrongCommandLine) {
 TEST_F(Failure, InvalidSource) {
   expect_sentence(run({"info", "serial:111"}), 2, "this does not name a lidar. ");
   expect_sentence(run({"info", "serial:111"}), 2, "Without SOURCE the only lidar is opened");
+  expect_sentence(run({"dump", "sim"}), 2, "(did you mean sim:?)");  // no second command
 }
 
 TEST_F(Failure, WrongCommandLineTouchesNoFile) {
