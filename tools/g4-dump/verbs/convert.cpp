@@ -2,7 +2,6 @@
 // The verb convert.
 #include <fmt/format.h>
 
-#include <array>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -15,9 +14,7 @@
 
 #include "cli/exit_code.hpp"
 #include "cli/logger.hpp"
-#include "g4lidar/recording/raw_bytes.hpp"
 #include "g4lidar/recording/writer.hpp"
-#include "g4lidar/transport/transport.hpp"
 #include "io/input.hpp"
 #include "io/interrupt.hpp"
 #include "io/output.hpp"
@@ -25,6 +22,7 @@
 #include "io/read_loop.hpp"
 #include "io/recorder.hpp"
 #include "io/text_input.hpp"
+#include "verbs/copied_bytes.hpp"
 #include "verbs/dump_verbs.hpp"
 
 namespace g4_tool {
@@ -167,68 +165,13 @@ int to_points(convert_options options, file_form given, file_form to) {
   return convert_text(job, is_csv ? text_source::csv : text_source::jsonl, options.text_frame);
 }
 
-void write_bytes(output& out, const std::vector<std::uint8_t>& data) {
-  out.write({reinterpret_cast<const char*>(data.data()), data.size()});
-}
-
-/// Writes the bytes that the lidar sent. Returns their number.
-std::uint64_t copy_recording(const convert_options& options, output& out) {
-  const std::string path = path_of_source(options.in());
-  const std::int64_t from_ns = options.range().from_ns;
-  const std::int64_t to_ns = options.range().to_ns;
-  const recording_reader about = open_recording(path);
-  raw_copy copy(about.model(), about.device().value_or(recorded_device{}).information);
-  std::uint64_t count = 0;
-  std::vector<std::uint8_t> copied;
-  const auto take = [&](const recorded_item& item) {
-    const bool is_wanted = from_ns <= 0 || item.time_ns - about.first_ns() >= from_ns;
-    copied.clear();
-    copy.take(item, is_wanted, copied);
-    write_bytes(out, copied);
-    if (is_wanted && item.what == recorded_item::kind::from_device) count += item.data.size();
-    return !out.is_closed();
-  };
-  const auto reader =
-      read_items(path, {.from_ns = copy.needs_begin() ? 0 : from_ns, .to_ns = to_ns}, take);
-  logger::info(
-      fmt::format("{} from the lidar\n{}", counted(count, "byte"), describe(reader.damage())));
-  return count;
-}
-
-/// Writes a part of raw bytes; their times are counted. Returns the number of those that were wanted.
-std::uint64_t copy_bytes(const convert_options& options, output& out) {
-  const g4lidar::model* const named = model_of(*options.points.common);
-  const auto from = value_of(open_raw_bytes(
-      path_of_source(options.in()), options.points.source.raw_sample_rate_hz, {}, {}, named));
-  const g4lidar::model* const which = named != nullptr ? named : from->traits().recognised.model;
-  raw_copy copy(which != nullptr ? *which : g4_model);
-  const std::int64_t begin_ns = from->now_ns();
-  const auto opened = value_of(from->connect());
-  std::array<std::uint8_t, 32'768> memory;
-  std::vector<std::uint8_t> copied;
-  std::uint64_t count = 0;
-  while (interrupt() == 0 && !out.is_closed()) {
-    const auto got = opened->read(memory, opened->now_ns() + 50'000'000);
-    if (!got && got.error().code() == g4lidar::problem::end_of_input) break;
-    if (!got) throw failure(got.error());
-    const std::int64_t since_ns = got->arrival_ns - begin_ns;
-    if (since_ns >= options.range().to_ns) break;
-    copied.clear();
-    const bool is_wanted = since_ns >= options.range().from_ns;
-    if (is_wanted) count += got->count;
-    copy.received(g4lidar::bytes(memory).first(got->count), is_wanted, copied);
-    write_bytes(out, copied);
-  }
-  return count;
-}
-
 int to_bytes(const convert_options& options, file_form form) {
   output out(options.out());
   if (out.is_terminal()) {
     throw failure(exit_code::usage, "raw bytes are not for a terminal. Give a file as OUT.");
   }
-  const std::uint64_t count =
-      form == file_form::recording ? copy_recording(options, out) : copy_bytes(options, out);
+  const std::uint64_t count = form == file_form::recording ? copy_recording(options.points, out)
+                                                           : copy_bytes(options.points, out);
   if (count == 0 && options.range().from_ns > 0 && interrupt() == 0)
     throw no_packet_in(options.in(), true);
   out.commit();

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "common_options.hpp"
+#include "config_file.hpp"
 #include "exit_code.hpp"
 #include "g4lidar/version.hpp"
 #include "io/output.hpp"
@@ -49,14 +50,10 @@ class help_formatter final : public CLI::Formatter {
 /// Reads the file of --config. A flag that is false there counts as not given.
 class config_reader final : public CLI::ConfigBase {
   std::vector<CLI::ConfigItem> from_config(std::istream& in) const override {
-    constexpr std::size_t most = 1'000'000;
-    std::string text(most + 1, '\0');
-    in.read(text.data(), static_cast<std::streamsize>(text.size()));
-    text.resize(static_cast<std::size_t>(in.gcount()));
-    if (in.bad()) throw CLI::FileError("--config: the file cannot be read");
-    if (text.size() > most) throw CLI::FileError("--config: the file is longer than 1 MB");
-    std::istringstream whole(text);
-    std::vector<CLI::ConfigItem> lines = CLI::ConfigBase::from_config(whole);
+    std::string problem;
+    std::istringstream text(config_text(in, problem));
+    if (!problem.empty()) throw CLI::FileError("--config: " + problem);
+    std::vector<CLI::ConfigItem> lines = CLI::ConfigBase::from_config(text);
     std::erase_if(lines, [](const CLI::ConfigItem& line) {
       return line.inputs == std::vector<std::string>{"false"};
     });
@@ -155,25 +152,6 @@ std::vector<std::string> option_names(const CLI::App& app, std::string_view dash
     }
   }
   return names;
-}
-
-/// The error of a line of the file of --config that is not an option.
-std::string problem_in_file(std::string line, const std::vector<std::string>& options) {
-  constexpr std::string_view section = ".++";
-  if (line.ends_with(section)) line.resize(line.size() - section.size());
-  const std::size_t colon = line.find(':');
-  if (colon == std::string::npos || (colon + 1 < line.size() && line[colon + 1] != ' ')) {
-    return "unknown option " + in_quotes(line) + " in the file of --config" +
-           did_you_mean(line, options);
-  }
-  const std::string name = line.substr(0, colon);
-  const std::size_t begin = line.find_first_not_of(' ', colon + 1);
-  if (begin == std::string::npos) return in_quotes(line) + " is YAML; --config reads TOML";
-  const std::string value = line.substr(begin);
-  const bool is_word = value.find_first_not_of("0123456789.+-") != std::string::npos &&
-                       value != "true" && value != "false" && value.front() != '"';
-  return fmt::format("{} is YAML; --config reads TOML: {} = {}{}{}", in_quotes(line), name,
-                     is_word ? "\"" : "", value, is_word ? "\"" : "");
 }
 
 /// The error of the command line, without a full stop.
