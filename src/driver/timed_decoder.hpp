@@ -144,9 +144,9 @@ class timed_decoder {
     if (found.sample_count > 1) usual_samples_ = found.sample_count;  // one: a zero packet
     return 2 * gap.lost < usual_samples_ ? 0 : gap.lost;
   }
-  /// The time of the next sample.
+  /// The time of the next sample; 0 before the first one.
   [[nodiscard]] std::int64_t counted_ns() const noexcept {
-    return detail::wrapping_add(counted_from_ns_, counted_->now_ns());
+    return counted_ ? detail::wrapping_add(counted_from_ns_, counted_->now_ns()) : 0;
   }
   /// The samples of a suspect packet were measured, too. A packet arrives one period after its last sample.
   void count(const decoded& found, std::int64_t arrival_ns,
