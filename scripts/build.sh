@@ -113,21 +113,20 @@ report_tests() {
 }
 
 # run_tests <preset> <ctest argument>...: three in parallel for each processor, because many tests wait most of their
-# time; not so with the thread sanitizer. A test of a suite that computes takes the place of three. The time limit of a
-# test is that of the preset, multiplied for longer random tests (G4LIDAR_TEST_SCALE).
+# time. A test of a suite that computes takes the place of three. The time limit of a test is that of the preset,
+# multiplied for longer random tests (G4LIDAR_TEST_SCALE).
 # ctest counts a skipped test as passed: the last line does not. Each skipped test has a line
 # "SKIPPED: name: reason", each failed one a line "FAILED: name".
 run_tests() {
   local preset=$1 scale=${G4LIDAR_TEST_SCALE:-1} longer=() code=0
-  local results=$PWD/build/${preset%-all}/tests.xml parallel=$((3 * $(nproc)))
-  if [[ $preset == tsan ]]; then parallel=$(($(nproc) + 1)); fi
+  local results=$PWD/build/${preset%-all}/tests.xml
   shift
   if ((scale > 1)); then longer=(--timeout $((600 * scale))); fi
   # The seed of rapidcheck: fixed by default.
   export RC_PARAMS=${RC_PARAMS:-seed=${G4LIDAR_TEST_SEED:-1}}
   rm -f "$results"
   # All output is kept: the skipped tests of an executable are named in it.
-  ctest --preset "$preset" --parallel "$parallel" --output-junit "$results" \
+  ctest --preset "$preset" --parallel "$((3 * $(nproc)))" --output-junit "$results" \
     --test-output-size-passed 10000000 "${longer[@]}" "$@" || code=$?
   if [[ -e $results ]]; then report_tests <"$results"; fi
   return "$code"

@@ -47,7 +47,7 @@ using polygon = std::span<const corner>;
         static_cast<double>(high.x_m - low.x_m) * static_cast<double>(position.y_m - low.y_m);
     const double along =
         static_cast<double>(position.x_m - low.x_m) * static_cast<double>(high.y_m - low.y_m);
-    if (along < across) inside = !inside;  // the edge is to the right of `at`
+    if (along < across) inside = !inside;  // the edge is to the right of `position`
   }
   return inside;
 }

@@ -199,7 +199,7 @@ class G4LIDAR_API lidar_event_loop {
   [[nodiscard]] int native_handle() const noexcept;
   /// The latest time for the next call; time_point::max() if only bytes are awaited.
   [[nodiscard]] std::chrono::steady_clock::time_point next_deadline() const noexcept;
-  /// The same in nanoseconds of std::chrono::steady_clock; never_ns of transport.hpp for never.
+  /// The same in nanoseconds of std::chrono::steady_clock; never_ns of transport/transport.hpp for never.
   [[nodiscard]] std::int64_t next_deadline_ns() const noexcept;
   /// Processes what has arrived. Scans that next_scan() does not take are counted as missed.
   [[nodiscard]] result<void> process();
@@ -285,7 +285,7 @@ class G4LIDAR_API scan_loop {
 
   /// Waits at most `slice` for the next scan; valid as that of lidar::wait_scan(). Nothing: none has come, and the loop
   /// goes on. Errors, which end the loop: as lidar::wait_scan(). After cancelled the next call continues the same wait.
-  [[nodiscard]] result<std::optional<scan>> wait(lidar& source, lidar::milliseconds slice);
+  [[nodiscard]] result<std::optional<scan>> wait(lidar& device, lidar::milliseconds slice);
   /// How long from now a wait for the next scan can last; milliseconds::max() without limit.
   [[nodiscard]] lidar::milliseconds left(const lidar& from) const noexcept;
 

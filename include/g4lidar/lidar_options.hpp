@@ -100,7 +100,7 @@ struct lidar_options {
   /// rate. If it is not given, those of a file are counted at first_rate_hz() of the model, and those of a pipe are
   /// estimated from when the bytes are read.
   std::optional<std::uint32_t> raw_sample_rate_hz{};
-  /// Of a pipe: times are counted at first_rate_hz(), too.
+  /// For a pipe without `raw_sample_rate_hz`: times are counted at first_rate_hz() of the model.
   bool counts_times = false;
   /// Called with the connector of each attempt to open, if it is set: to record, to observe. What it
   /// returns is used instead; its error ends the attempt.

@@ -55,7 +55,7 @@ struct service_options {
   /// Whether points and odometry are given as they come, and not with each scan.
   bool gives_points = false;
   bool reads_settings = false;  ///< Whether the lidar is asked for all settings when it is opened.
-  bool is_standby = false;  ///< Whether the motors rest while no sink wants anything: see standby.
+  bool is_standby = false;      ///< Whether the motors rest from 3 s after no sink wants anything.
   /// The motion that another program states, for deskewing::by_path where the source states none: adds poses until the
   /// end of a scan, by the clock of its points. `ahead_ns`: the clock of stamps minus that one. In the thread of a lidar.
   std::function<void(odometry_path&, const scan&, std::int64_t ahead_ns)> other_odometry{};
@@ -106,8 +106,8 @@ struct service_scan {
   [[nodiscard]] G4LIDAR_API std::int64_t stamp_ns(std::int64_t time_ns) const noexcept;
 };
 
-/// What a program does with the products of a service. One call at a time; calls of one lidar are in order. They throw
-/// nothing. No call may wait for another thread that calls stop() or destroys the service.
+/// What a program does with the products of a service. One call at a time, except on_open(); calls of one lidar are in order.
+/// They throw nothing. No call may wait for another thread that calls stop() or destroys the service.
 class G4LIDAR_API service_sink {
  public:
   service_sink() = default;
@@ -139,7 +139,8 @@ class G4LIDAR_API service_sink {
   virtual void on_values(std::size_t /*lidar*/, const std::string& /*refused*/) {}
 
   // Only of a sink that is called in the threads of lidars: see delivery.
-  /// It was opened; its scan is not started yet: it can be asked. Calls for several lidars may overlap.
+  /// It was opened; its scan is not started yet: it can be asked. It may run at the same time as calls of other
+  /// lidars.
   virtual void on_open(std::size_t /*lidar*/, g4lidar::lidar& /*device*/) {}
   /// A scan as it was measured, before it is shaped; also a piece of one.
   virtual void on_measured(std::size_t /*lidar*/, const scan& /*found*/) {}

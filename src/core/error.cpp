@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <cstring>
 #include <string>
 #include <utility>
@@ -251,7 +252,11 @@ bool error::may_pass() const noexcept {
                     read_only, bad_file, end_of_input, cancelled, system, not_supported);
 }
 
-std::string_view error::advice() const noexcept { return words_of(code_, detail_).advice; }
+std::string_view error::advice() const noexcept {
+  if (errno_ == EMFILE)
+    return "Too many files are open: raise the limit, as with `ulimit -n 1024`.";
+  return words_of(code_, detail_).advice;
+}
 
 std::string error::message() const {
   std::string text(name_of(doing_));

@@ -20,7 +20,7 @@ constexpr double other_model_tolerance = 0.06;
 /// How far a number of samples per revolution may be beyond those at the limits of rate and frequency.
 constexpr double revolution_tolerance = 0.1;
 
-/// How far a rate may be wrong because bytes were late by the longest time without any, as a fraction.
+/// The possible error of a measured rate, as a fraction, if bytes came late by the longest silence.
 double doubt_of(const stream_tally& measured) {
   const double silence_s = static_cast<double>(measured.arrivals.longest_silence_ns()) * 1e-9;
   const double samples = static_cast<double>(measured.samples);
@@ -97,11 +97,12 @@ void report_rate(stage_log& log, const stream_statistics& measured, const device
                  const model& wanted) {
   const double frequency_hz = measured.tally().frequency_hz();
   const double rate_hz = measured.tally().sample_rate_hz();
-  // Late arrivals look like another rate: of a computer that is busy, or when this was recorded. So do whole revolutions
-  // that are lost.
-  const bool is_certain = !is_host_busy(measured) && measured.tally().arrivals.stalls() == 0 &&
-                          !is_mostly_damaged(measured);
+  // Late arrivals look like another rate: because the computer is busy, or was when this was recorded. So do whole
+  // revolutions that are lost.
   const double doubt = doubt_of(measured.tally());
+  const double all_stalls = static_cast<double>(measured.tally().arrivals.stalls()) * doubt;
+  const bool is_certain =
+      !is_host_busy(measured) && all_stalls < frequency_tolerance && !is_mostly_damaged(measured);
   stage_report rate{.stage = diagnostic_stage::rate};
   const double reported_hz = true_frequency_dhz(wanted, measured.tally().reported_dhz()) / 10.0;
   if (reported_hz > 0.0) rate.add("reported_hz", reported_hz);

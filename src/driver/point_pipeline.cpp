@@ -29,7 +29,7 @@ void point_pipeline::become(const model& model, std::uint32_t baud) {
   which_ = &model;
   input_.become(model.samples);
   decoder_.become(model);
-  decoder_.forget();
+  decoder_.forget_transport();
   decoder_.follow(baud);
   storage_.resize(largest_scan(model));
   assembler_ = scan_assembler(storage_.all(), model);

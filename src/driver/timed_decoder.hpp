@@ -49,9 +49,12 @@ class timed_decoder {
                            .baud = baud,
                            .layout = which_->samples.layout});
   }
+  /// Another model sends the bytes. Before follow().
+  void forget_transport() noexcept { baud_.reset(); }
   /// The following bytes may be earlier ones. Before follow().
   void forget() noexcept {
-    baud_.reset();
+    forget_transport();
+    counted_.reset();
     counted_until_ns_ = std::numeric_limits<std::int64_t>::min();
   }
   /// What is added to each angle.

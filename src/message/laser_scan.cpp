@@ -46,11 +46,11 @@ std::size_t fill_time_grid(std::span<const point> points, std::int64_t duration_
 }
 
 void fill_laser_scan(const scan& source, message_header& header, std::size_t bins,
-                     const grid_options& grid, std::vector<float>& ranges_m,
+                     const grid_options& options, std::vector<float>& ranges_m,
                      std::vector<float>& intensities) {
   ranges_m.resize(bins);
   intensities.resize(has_intensity(*source.model) ? bins : 0);
-  grid_options how = grid.with(*source.model);
+  grid_options how = options.with(*source.model);
   header.longest_mm = how.longest_mm;
   how.to = frame::robot;
   header.first_bin = 0;

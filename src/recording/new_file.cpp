@@ -34,7 +34,7 @@ result<new_file> new_file::create(const std::string& path, bool replaces) {
   const bool is_there = ::stat(path.c_str(), &older) == 0;
   const bool is_file = is_there && S_ISREG(older.st_mode);
   if (is_file && replaces) return create_beside(path, older.st_mode & permissions);
-  // A device or a pipe is written to as it is.
+  // A device is written to as it is. So is a pipe, where writing then fails: ESPIPE.
   const bool exists = is_there && !is_file;
   owned_fd fd = open_to_write(path, exists ? 0 : O_CREAT | (replaces ? O_TRUNC : O_EXCL));
   if (!fd) return failed(task::opening, path);

@@ -14,7 +14,7 @@ namespace g4lidar {
 /// older file remains.
 class new_file {
  public:
-  /// `replaces`: an existing file may be replaced. Else it is an error: EEXIST.
+  /// `replaces`: an existing regular file may be replaced. Else it is an error: EEXIST. A device is opened as it is.
   [[nodiscard]] static result<new_file> create(const std::string& path, bool replaces);
   new_file(new_file&&) noexcept = default;
   new_file& operator=(new_file&&) = delete;

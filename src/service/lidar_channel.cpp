@@ -13,8 +13,8 @@ lidar_channel::lidar_channel(service_lidar lidar, std::size_t index, service_cor
       index_(index),
       core_(core),
       is_file_(names_file(about_.options.device)),
-      wanted_(about_.settings),
       reader_(observed_options(), {.wants_points = core.options().gives_points}, this) {
+  for (const named_value& each : about_.settings) want(each);
   // Merged lidars are on one robot: that of the first one.
   if (index_ > 0) return;
   const std::string& source = about_.options.device;
@@ -101,14 +101,13 @@ std::string lidar_channel::set(lidar* device, const std::vector<named_value>& wa
     static_cast<void>(settings_.change(device, before));
     return wrong;
   }
-  for (const named_value& each : wanted) {
-    const auto at = std::ranges::find(wanted_, each.first, &named_value::first);
-    if (at == wanted_.end())
-      wanted_.push_back(each);
-    else
-      *at = each;
-  }
+  for (const named_value& each : wanted) want(each);
   return {};
+}
+
+void lidar_channel::want(const named_value& setting) {
+  std::erase_if(wanted_, [&](const named_value& each) { return each.first == setting.first; });
+  wanted_.push_back(setting);
 }
 
 void lidar_channel::follow_motion(std::span<const point> points) {

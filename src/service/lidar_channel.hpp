@@ -39,7 +39,7 @@ class lidar_channel final : private reader_listener {
   [[nodiscard]] bool is_failure(const error& why) const noexcept;
   [[nodiscard]] bool has_odometry() const noexcept { return has_odometry_; }
   /// Makes settings, and from now on each time when it is opened: why not, or empty. `then` is called when they are made;
-  /// if it gives a reason, they are undone. In its thread.
+  /// if it gives a reason, they are undone, as far as their earlier values are known. In its thread.
   [[nodiscard]] std::string set(lidar* device, const std::vector<named_value>& wanted,
                                 const std::function<std::string()>& then);
   /// See service_scan. In its thread.
@@ -55,6 +55,7 @@ class lidar_channel final : private reader_listener {
   [[nodiscard]] lidar_options observed_options();
   void follow_motion(std::span<const point> points);
   void show_model(const g4lidar::model& now);
+  void want(const named_value& setting);
 
   const service_lidar about_;
   const std::size_t index_;

@@ -16,7 +16,7 @@ namespace g4lidar {
 class motion_watch {
  public:
   /// `where`: odometry is expected, for deskewing by_path: "on /odom".
-  motion_watch(deskewing deskewing, const std::string& where);
+  motion_watch(deskewing deskew, const std::string& where);
 
   /// A scan of `points`, of which `outside` have no known motion. False when several scans in sequence had none at all,
   /// and true when the motion is known again; else nothing. *Single thread.*

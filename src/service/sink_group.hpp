@@ -44,7 +44,7 @@ class sink_group {
     return all;
   }
 
-  /// Calls `call` with each of them, while `lock` of mutex() is held.
+  /// Calls `call` with each of them. The caller holds mutex(), except for on_open().
   template <class Call>
   void each(Call call) {
     for (service_sink* const each : sinks_) call(*each);

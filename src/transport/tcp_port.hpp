@@ -30,7 +30,6 @@ struct tcp_options {
 /// Connects to bridges. The resulting transport keeps the promises of serial_port, with these
 /// differences: a connection that the remote end closes properly is end_of_input; one that breaks
 /// is gone. A disconnected network cable is silence: the system detects it after about ten seconds.
-/// seconds.
 ///
 /// *Allocates on open*, not afterwards.
 class tcp_port {

@@ -156,6 +156,11 @@ TEST(Text, OfAWordForAModel_IsShort) {
       << given.error().subject();
 }
 
+TEST(Text, OfTooManyFiles_NamesTheLimit) {
+  const error full(task::opening, problem::system, "/dev/ttyUSB0", EMFILE);
+  EXPECT_TRUE(has(full.message(), "ulimit -n")) << full.message();
+}
+
 /// A message of the C interface has 255 characters for the cause and for the advice.
 TEST(Text, OfEachDetail_FitsIntoTheCInterface) {
   for (auto detail = error_detail::usual; detail <= last_error_detail;

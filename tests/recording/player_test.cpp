@@ -281,5 +281,14 @@ TEST_F(Player, RawBytes_ArePlayedByTheirSamples) {
   EXPECT_EQ(device.counts().stream.packets, 62U);
 }
 
+TEST_F(Player, RawBytes_HaveTheSameTimesAfterASeek) {
+  const temporary_path raw(".bin");
+  std::ofstream(raw.text(), std::ios::binary) << packets(100);
+  lidar device = started(std::move(*open_raw_bytes(raw.text(), 4000, {})));
+  const auto whole = rest_of(device);
+  ASSERT_TRUE(device.player()->seek(0));
+  EXPECT_EQ(rest_of(device), whole);
+}
+
 }  // namespace
 }  // namespace g4lidar::test

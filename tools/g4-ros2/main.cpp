@@ -29,8 +29,8 @@ constexpr const char* details =
   /clock         the time of a recording
   NODE/run       subscribed, std_msgs/Bool: false rests the motors, true lets them turn
 
---announce auto announces the node to ROS 2 from Iron on if ROS_DISTRO names such a release, and to
-Humble if only such programs are in the domain.
+--announce auto announces the node in the form of the release that ROS_DISTRO names, and not at all
+without it.
 
 Several lidars have names: front=/dev/ttyUSB0 rear=/dev/ttyUSB1. Then each name is a namespace,
 and begins the frame of its lidar: front_laser. --merge publishes one scan and one cloud of all

@@ -58,9 +58,9 @@ G4LIDAR_C_API int g4lidar_list_ports(const g4lidar_find_options* options, g4lida
  *  `probe_timeout_ms` for each port. */
 G4LIDAR_C_API int g4lidar_find_lidars(const g4lidar_find_options* options, g4lidar_ports** ports,
                                       g4lidar_error* error);
-/** The port that `which` names as in g4lidar_options: a list of one. Fails with no_port, several_ports,
+/** The port that `name` names as in g4lidar_options: a list of one. Fails with no_port, several_ports,
  *  bad_option, system; for "serial:" also with permission or busy. */
-G4LIDAR_C_API int g4lidar_select_port(const char* which, const g4lidar_find_options* options,
+G4LIDAR_C_API int g4lidar_select_port(const char* name, const g4lidar_find_options* options,
                                       g4lidar_ports** ports, g4lidar_error* error);
 /** The number of ports. */
 G4LIDAR_C_API size_t g4lidar_ports_count(const g4lidar_ports* ports);

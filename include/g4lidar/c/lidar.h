@@ -167,20 +167,20 @@ G4LIDAR_C_API int g4lidar_process(g4lidar_lidar* lidar, g4lidar_error* error);
 G4LIDAR_C_API void g4lidar_wake(g4lidar_lidar* lidar);
 
 /** Queries a g4lidar_setting. Of G4LIDAR_CONSTANT_FREQUENCY and G4LIDAR_POWER_DOWN_PROTECTION the
- *  protocol has no query: G4LIDAR_BAD_ARGUMENT. `how` is a g4lidar_while_scanning, here and below.
+ *  protocol has no query: G4LIDAR_BAD_ARGUMENT. `if_scanning` is a g4lidar_while_scanning, here and below.
  *  Each request blocks at most 15 s, 20 s if a scan is resumed. */
-G4LIDAR_C_API int g4lidar_get(g4lidar_lidar* lidar, int setting, int how, int32_t* value,
+G4LIDAR_C_API int g4lidar_get(g4lidar_lidar* lidar, int setting, int if_scanning, int32_t* value,
                               g4lidar_error* error);
 /** Sets a g4lidar_setting, and returns the value that the device reports afterwards in `reached`, which
  *  may be NULL. It is set again at each start and after a reconnect. */
-G4LIDAR_C_API int g4lidar_set(g4lidar_lidar* lidar, int setting, int32_t wanted, int how,
+G4LIDAR_C_API int g4lidar_set(g4lidar_lidar* lidar, int setting, int32_t wanted, int if_scanning,
                               int32_t* reached, g4lidar_error* error);
 /** Changes the scan frequency by `step_chz` 0.01 Hz: -100, -10, 10 or 100. The frequency afterwards, in
  *  0.01 Hz, is in `reached`, which may be NULL; at the end of the range it is the same as before. */
-G4LIDAR_C_API int g4lidar_step_frequency(g4lidar_lidar* lidar, int32_t step_chz, int how,
+G4LIDAR_C_API int g4lidar_step_frequency(g4lidar_lidar* lidar, int32_t step_chz, int if_scanning,
                                          int32_t* reached, g4lidar_error* error);
 /** Restarts the device, and waits until it replies again. */
-G4LIDAR_C_API int g4lidar_restart(g4lidar_lidar* lidar, int how, g4lidar_error* error);
+G4LIDAR_C_API int g4lidar_restart(g4lidar_lidar* lidar, int if_scanning, g4lidar_error* error);
 
 /** The status that the device reports. */
 enum g4lidar_health_status {
@@ -196,7 +196,7 @@ typedef struct g4lidar_health {
 } g4lidar_health;
 
 /** Queries the health. */
-G4LIDAR_C_API int g4lidar_get_health(g4lidar_lidar* lidar, int how, g4lidar_health* health,
+G4LIDAR_C_API int g4lidar_get_health(g4lidar_lidar* lidar, int if_scanning, g4lidar_health* health,
                                      g4lidar_error* error);
 
 /** What identifies a lidar. */

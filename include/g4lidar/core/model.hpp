@@ -50,7 +50,7 @@ inline constexpr auto models = [] {
     return sample_rate_list{.entries = {{{hz, shortest_mm}}}, .nominal_hz = hz};
   };
   constexpr auto by_pin = [](std::string_view pin) { return frequency_properties{.pin = pin}; };
-  // The model of the same sub-family as `base` that differs from it so. One layout stays one layout.
+  // `base` with another word and name, changed by `differ`. If `base` has one layout only, so has the result.
   constexpr auto like = [](const model& base, std::string_view word, std::string_view name,
                            auto differ) {
     model made = base;

@@ -206,9 +206,9 @@ class session {
     }
   }
 
-  constexpr void end(verdict end, const answer& value, std::int64_t now_ns) noexcept {
-    request_.decide(end, value);
-    if (end == verdict::timed_out) {
+  constexpr void end(verdict decision, const answer& value, std::int64_t now_ns) noexcept {
+    request_.decide(decision, value);
+    if (decision == verdict::timed_out) {
       is_idle_ = false;
       channel_.question().doubt_all();
     }

@@ -59,7 +59,7 @@ class replay_player final : public scan_source {
   /// Of the points that follow.
   struct sampling {
     std::uint32_t rate_hz;
-    bool is_given;  ///< It is not that of the model.
+    bool is_given;  ///< It stays when the model changes.
     bool counts_times;
   };
 

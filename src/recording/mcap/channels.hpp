@@ -89,8 +89,8 @@ class found_channels {
   /// Takes the content of the record of a channel.
   void take(field_reader record);
 
-  [[nodiscard]] bool has(channel_id which) const noexcept {
-    return ids_[index_of(which)].has_value();
+  [[nodiscard]] bool has(channel_id channel) const noexcept {
+    return ids_[index_of(channel)].has_value();
   }
   [[nodiscard]] bool is(channel_id channel, std::uint16_t id) const noexcept {
     return ids_[index_of(channel)] == id;

@@ -67,7 +67,7 @@ class recording_writer::file_writer {
  public:
   file_writer(mcap::mcap_file first, std::string_view path, const recording_options& options);
 
-  void put_bytes(direction direction, bytes data, std::int64_t time_ns) noexcept;
+  void put_bytes(direction flow, bytes data, std::int64_t time_ns) noexcept;
   void event(const recorded_event& what) noexcept;
   void scan(const g4lidar::scan& revolution) noexcept;
   void odometry(const stamped_odometry& what) noexcept;

@@ -29,21 +29,21 @@ namespace g4lidar {
 /// The bytes of a file: their times are counted from samples.
 class counted_items final : public item_source {
  public:
-  /// Of bytes that belong to no packet; of those of a pipe, whose points a ring can hold.
+  /// The longest piece of bytes that belong to no packet, and of bytes of a pipe: its points fit into a ring.
   static constexpr std::size_t longest_piece = 16'384;
 
-  /// Of the file behind `fd` from `at` on, whose first sample was measured at `wall_ns`.
-  counted_items(std::shared_ptr<const owned_fd> fd, off_t at, std::string name,
+  /// Of the file behind `fd` from `begin` on, whose first sample was measured at `wall_ns`.
+  counted_items(std::shared_ptr<const owned_fd> fd, off_t begin, std::string name,
                 std::uint32_t sample_rate_hz, std::int64_t wall_ns, std::int64_t to_ns,
-                std::function<bool()> is_cancelled, const g4lidar::model& which)
+                std::function<bool()> is_cancelled, const g4lidar::model& sender)
       : fd_(std::move(fd)),
-        file_begin_(at),
+        file_begin_(begin),
         name_(std::move(name)),
         rate_hz_(sample_rate_hz),
         wall_ahead_ns_(wall_ns - file_begin_ns),
         to_ns_(detail::saturating_add(file_begin_ns, to_ns)),
         is_cancelled_(std::move(is_cancelled)),
-        model_(&which) {}
+        model_(&sender) {}
 
   [[nodiscard]] std::uint32_t counted_hz() const noexcept override {
     return static_cast<std::uint32_t>(rate_hz_);

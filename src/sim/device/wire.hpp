@@ -38,7 +38,7 @@ class wire {
 
   /// To be sent after everything else.
   void send(bytes content, std::int64_t now_ns) noexcept;
-  void send(const transmission& transmission, std::int64_t now_ns) noexcept;
+  void send(const transmission& sending, std::int64_t now_ns) noexcept;
   /// To be sent immediately, within the current output.
   void interject(const answer_bytes& answer, std::int64_t now_ns) noexcept;
   /// Discards output that has not begun; with `at_once`, also the rest of the current output.
