@@ -129,6 +129,7 @@ TEST(Dump, InvalidOptions_AreRefused) {
     EXPECT_EQ(lines_of(done.err).size(), 1U);
   };
   refused({"--range", "16:0.28"}, "ends before it begins");
+  refused({"--ignore", ""}, "the value is empty; give directions: 30:40");
   refused({"--range", "5"}, "'5' is not a range");
   refused({"--fov", "-400:0"}, "--fov");
   refused({"--frame", "map"}, "not one of vendor, robot");

@@ -265,12 +265,15 @@ TEST_F(Outputs, WithoutAnythingToWrite_TheOldFileStays) {
                             {"record", "nosuch.bin"},
                             {"record", "sim:?world=nosuch.txt"},
                             {"dump", "tcp:localhost:1"},
+                            {"dump", "sim:?fault=mute@0"},
                             {"scan", "tcp:localhost:1"},
                             {"decode", "nosuch.bin"},
                             {"decode", "room.txt"},
                             {"sim", "--world", "nosuch.txt"}}) {
     EXPECT_NE(run(joined(line, {"-o", "old.mcap", "--force"})).code, 0) << line[1];
     EXPECT_EQ(cli::read_file("old.mcap"), "dear") << line[0] << " " << line[1];
+    EXPECT_NE(run(joined(line, {"-o", "new.mcap"})).code, 0) << line[1];
+    EXPECT_FALSE(fs::exists("new.mcap")) << line[1];
   }
   for (const auto& each : fs::directory_iterator("."))
     EXPECT_NE(each.path().extension(), ".tmp") << each.path();
@@ -284,7 +287,7 @@ TEST_F(Outputs, NumbersOfExistingFilesAreLeftOut) {
   cli::write_file("rr-0003.mcap", "dear");
   for (const words& more : {words{}, {"--force"}}) {
     const outcome done = run(joined(
-        {"record", "sim:?seed=3", "-o", "rr.mcap", "--rotate-time", "1s", "-d", "3s"}, more));
+        {"record", "sim:?seed=3", "-o", "rr.mcap", "--rotate-time", "1s", "-d", "5s"}, more));
     ASSERT_EQ(done.code, 0) << done.err;
     EXPECT_EQ(cli::read_file("rr-0001.mcap"), "dear");
     EXPECT_EQ(cli::read_file("rr-0003.mcap"), "dear");

@@ -55,11 +55,11 @@ TEST_F(Pipe, JsonlFollowsRevolutionByRevolution) {
 // A revolution takes longer than --idle: the bytes that come count, and not its records.
 TEST_F(Pipe, IdleBeginsAgainWithEachByte) {
   const std::string turns = cli::zero(0) + cli::turn() + cli::zero(0);
-  program started({"decode", "-", "--format", "jsonl", "--scans", "--idle", "2s"});
+  program started({"decode", "-", "--format", "jsonl", "--scans", "--idle", "4s"});
   const std::size_t piece = turns.size() / 12 + 1;
   for (std::size_t at = 0; at < turns.size(); at += piece) {
     started.feed(turns.substr(at, piece));
-    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    std::this_thread::sleep_for(std::chrono::milliseconds(400));
   }
   EXPECT_THAT(started.read_until("]}\n"), StartsWith(R"({"scan":0,"partial":false)"));
   EXPECT_EQ(started.wait().code, 0);

@@ -103,6 +103,16 @@ INSTANTIATE_TEST_SUITE_P(Models, UnnamedModel, testing::ValuesIn(kinds()), [](co
 /// Limits and errors.
 class FoundModel : public UnnamedModel {};
 
+TEST_F(FoundModel, CommandsThatReadScans_FindIt) {
+  serve("t-mini-pro");
+  ASSERT_EQ(run({"record", port_, "-o", path("walk.mcap"), "-n", "2"}).code, 0);
+  const outcome info = run({"info", path("walk.mcap"), "--json"});
+  EXPECT_EQ(json::parse(info.out).at("lidar").at("model"), "t-mini-pro");
+  EXPECT_EQ(run({"view", port_, "--once"}).code, 0);
+  EXPECT_THAT(run({"packets", port_, "-n", "20"}).out, Not(HasSubstr("bad checksum")));
+  EXPECT_EQ(run({"stats", port_, "-n", "2"}).code, 0);
+}
+
 TEST_F(FoundModel, SettingsHaveItsLimits) {
   serve("tg15");  // 3 to 16 Hz
   const outcome slow = run({"set", port_, "frequency=4", "--json"});

@@ -246,6 +246,14 @@ TEST(Picture, WithLittleRoom_HasOneLine) {
 }  // namespace
 class MergedView : public cli::scratch {};
 
+TEST_F(MergedView, OneThatCannotBeOpened_IsNamed_AndTheOtherIsShown) {
+  const auto shown = cli::run(
+      {"view", "--once", "front=tcp:127.0.0.1:9", "rear=sim:", "--merge", "--size", "50x18"});
+  EXPECT_EQ(shown.code, 0) << shown.err;
+  EXPECT_EQ(cli::lines_of(shown.out).size(), 18U);
+  EXPECT_NE(shown.err.find("127.0.0.1:9"), std::string::npos) << shown.err;
+}
+
 // Each sees a wall of its own, ahead of the robot and behind it.
 TEST_F(MergedView, ShowsTheReturnsOfBothLidars) {
   cli::write_file(path("front.txt"), "wall -1 2 1 2\nlidar 0 0 -90\n");

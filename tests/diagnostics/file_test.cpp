@@ -13,6 +13,7 @@
 
 #include "diagnostics/doctor_bench.hpp"
 #include "g4lidar/core/command.hpp"
+#include "g4lidar/recording/writer.hpp"
 #include "transport/temporary_file.hpp"
 
 namespace {
@@ -284,6 +285,47 @@ TEST(Bytes, AreDiagnosedByTheirCounts) {
 TEST(Bytes, ThatAreFewOrNoneAreNoFault) {
   EXPECT_EQ(in_file("").diagnoses(), "bad_file");
   EXPECT_EQ(in_file(bytes_of({}, 1).substr(0, 400)).diagnoses(), "");
+}
+
+/// A recording of 1.5 s of a G4 that turns. Each read has the bytes of `batch_ms`, and comes `every_ms` after the one
+/// before; the last one comes `last_ms` after it.
+examined in_late_recording(double batch_ms, double every_ms, double last_ms,
+                           const recorded_device& known) {
+  const temporary_file file("");
+  {
+    auto writer = recording_writer::create(file.path(), {.overwrite = true});
+    EXPECT_TRUE(writer);
+    writer->device(known);
+    sim::device simulated(sim::built_in_world(), {}, faults_of({"scanning"}));
+    std::array<std::uint8_t, 4096> buffer{};
+    const int reads = static_cast<int>(1'500.0 / batch_ms);
+    double arrival_ms = 1'000.0;
+    for (int i = 1; i <= reads; ++i) {
+      std::vector<std::uint8_t> all;
+      const auto now_ns = static_cast<std::int64_t>(i * batch_ms * 1e6);
+      while (const std::size_t count = simulated.read(buffer, now_ns))
+        all.insert(all.end(), buffer.begin(), buffer.begin() + static_cast<std::ptrdiff_t>(count));
+      arrival_ms += i == reads ? last_ms : every_ms;
+      writer->from_device(all, static_cast<std::int64_t>(arrival_ms * 1e6));
+    }
+    EXPECT_TRUE(writer->close());
+  }
+  examined done;
+  done.stages = diagnose("file:" + file.path(), {});
+  return done;
+}
+
+// The program that recorded was late by up to 100 ms, and caught up: by the times alone the lidar is a tenth faster.
+TEST(LateBytes, OfARecording_AreNoOtherRate) {
+  const recorded_device seven{.frequency = scan_frequency::hz(7)};
+  const examined unnamed = in_late_recording(100, 91, 91, seven);
+  EXPECT_EQ(unnamed.diagnoses(), "") << unnamed;
+  const examined named = in_late_recording(100, 87, 87, {.sample_rate = sample_rate::khz_9});
+  EXPECT_EQ(named.diagnoses(), "") << named;
+  const examined stalled = in_late_recording(100, 80, 160, seven);
+  EXPECT_EQ(stalled.diagnoses(), "stalls") << stalled;
+  // In small reads nothing is late: this one is faster.
+  EXPECT_EQ(in_late_recording(10, 9.1, 9.1, seven).diagnoses(), "frequency_off other_device");
 }
 
 }  // namespace

@@ -180,16 +180,18 @@ TEST_F(RawBytes, OfAPipeThatIsStoppedAndStarted_TimesDoNotGoBack) {
   ASSERT_EQ(::mkfifo(path_.c_str(), 0600), 0);
   std::thread writer([&] { std::ofstream(path_, std::ios::binary) << all; });
   auto device = lidar::open({.device = path_, .model = &g4_model, .raw_sample_rate_hz = 7});
-  ASSERT_TRUE(device && device->start());
-  const auto first = device->next_points(std::chrono::seconds(10));
-  ASSERT_TRUE(first);
-  const std::int64_t until_ns = first->back().time_ns;
-  ASSERT_TRUE(device->stop());
-  ASSERT_TRUE(device->start());
-  const auto second = device->next_points(std::chrono::seconds(10));
-  ASSERT_TRUE(second);
-  EXPECT_GT(second->front().time_ns, until_ns);
-  while (device->next_points(std::chrono::seconds(10))) continue;
+  [&] {
+    ASSERT_TRUE(device && device->start());
+    const auto first = device->next_points(std::chrono::seconds(10));
+    ASSERT_TRUE(first);
+    const std::int64_t until_ns = first->back().time_ns;
+    ASSERT_TRUE(device->stop());
+    ASSERT_TRUE(device->start());
+    const auto second = device->next_points(std::chrono::seconds(10));
+    ASSERT_TRUE(second);
+    EXPECT_GT(second->front().time_ns, until_ns);
+  }();
+  while (device && device->next_points(std::chrono::seconds(10))) continue;
   writer.join();
 }
 

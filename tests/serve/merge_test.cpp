@@ -17,6 +17,7 @@
 
 #include "server.hpp"
 #include "support/cdr_reader.hpp"
+#include "support/patience.hpp"
 
 namespace {
 
@@ -286,6 +287,18 @@ TEST_F(Merged, WhatCannotBeMerged_IsAnErrorAtTheStart) {
               HasSubstr("there is no lidar 'b'"));
   cli::write_file(path("walk.bin"), "");
   EXPECT_THAT(refusal({"a=sim:", "b=file:" + path("walk.bin"), "--merge"}), HasSubstr("clock"));
+}
+
+TEST_F(Merged, OneThatHasEnded_IsReported_AndTheOtherGoesOn) {
+  begin_both({"--on-loss", "exit"}, "&fault=unplug@5s");
+  const auto client = open_page();
+  ASSERT_FALSE(next_status(*client, [](const json& now) {
+                 return now["lidars"][0]["state"] == "ended";
+               }).is_null());
+  EXPECT_TRUE(g4lidar::test::comes_true([&] {
+    return cli::read_file(path("err")).find("front: ") != std::string::npos;
+  })) << cli::read_file(path("err"));
+  EXPECT_TRUE(gets_scans(*client));
 }
 
 }  // namespace

@@ -79,11 +79,14 @@ TEST_F(ServiceMerging, OfOneLidar_PointsAreInTheFrameOfTheRobot) {
 }
 
 TEST_F(ServiceMerging, WithoutOneOfThem_TheOtherIsGiven_AndAWarning) {
-  begin_both({}, "&fault=unplug@5s");
+  begin_both({}, "&fault=unplug@12s");
   ASSERT_TRUE(wait_for_scan(true));
   const auto wall = std::chrono::system_clock::now().time_since_epoch();
   ASSERT_TRUE(wait_for_scan(false));
   ASSERT_TRUE(comes_true([&] { return service->status(0).state == reader_state::lost; }));
+  const std::size_t before = heard.number_of_scans();
+  ASSERT_TRUE(heard.wait(
+      [&] { return heard.scans.size() > before + 1 && heard.scans.back().kept_of_each[0] == 0; }));
   EXPECT_EQ(service->status(1).state, reader_state::running);
   const auto found = service->motion_diagnosis();
   ASSERT_EQ(found.size(), 1U);
@@ -188,6 +191,9 @@ TEST(ServiceLidars, AreOneTo32_OfDifferentNames) {
   }
   EXPECT_THAT(problem_of(lidars), HasSubstr("32"));
   EXPECT_THAT(problem_of({lidars[0], lidars[1], lidars[0]}), HasSubstr("the same name"));
+  service_lidar file = lidars[1];
+  file.options.device = "file:/nowhere";
+  EXPECT_THAT(problem_of({lidars[0], file}), HasSubstr("a clock of its own"));
   lidars.resize(1);
   EXPECT_FALSE(lidar_service::make(lidars, {}, {{nullptr}}));
   for (const char* const wrong : {"speed", "range_min", "model"}) {

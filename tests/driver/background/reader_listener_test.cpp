@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <fstream>
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
@@ -47,10 +48,12 @@ TEST_F(ReaderListener, GetsScansUntilTheReaderIsStopped) {
   const auto wall = std::chrono::system_clock::now().time_since_epoch();
   EXPECT_LT(std::abs(heard.last_scan_wall_ns - std::chrono::nanoseconds(wall).count()),
             std::chrono::nanoseconds(patience).count());
+  EXPECT_TRUE(heard.wait([&] {  // it has spun up
+    return std::abs(static_cast<double>(heard.last_size) - 9000 / 7.0) < 20.0;
+  }));
   made.stop();
-  const std::size_t all = heard.number_of_scans();
-  EXPECT_EQ(heard.scans.back() - heard.scans.front() + 1, all) << "each came once";
-  EXPECT_NEAR(static_cast<double>(heard.last_size), 9000 / 7.0, 20.0) << "it has spun up";
+  EXPECT_EQ(std::ranges::adjacent_find(heard.scans, std::greater_equal{}), heard.scans.end())
+      << "each came once";
   EXPECT_EQ(heard.live_points, 0U) << "not wanted";
   EXPECT_EQ(heard.states.front(), "running");
   EXPECT_EQ(heard.opened, 1);
@@ -77,7 +80,10 @@ TEST_F(ReaderListener, StatusHasAsWhichModelItIsRead_AlsoWhatBecomesKnownLater) 
   facts = facts_of(made);
   EXPECT_EQ(facts["number"], "4");
   EXPECT_NE(facts["contradictions"].find("reports the number 4"), std::string::npos);
-  EXPECT_EQ(made.status().information->model, 4);
+  EXPECT_TRUE(comes_true([&] {
+    const auto now = made.status().information;
+    return now && now->model == 4;
+  }));
 }
 
 TEST_F(ReaderListener, GetsThePointsOfEachScan) {
