@@ -171,6 +171,11 @@ class RadarTest(PageTest):
         self.assertLessEqual(self.page.read("scan.trails"), 16)
         self.trails(0)
         until(lambda: self.page.read("scan.trails") == 0, "no trails")
+        self.trails(2)
+        until(lambda: self.page.read("scan.trails") >= 4, "trails again")
+        self.page.keys(" ")
+        self.trails(0)  # of a frozen picture, too
+        until(lambda: self.page.read("scan.trails") == 0, "no trails while it is frozen")
 
     def test_keyboard_alone_reaches_everything(self):
         reached = set()

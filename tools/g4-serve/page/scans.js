@@ -60,15 +60,14 @@ export class Scans {
     return true;
   }
 
-  /** @param {number} seconds  Since the last call. Removes old trails. */
+  /** @param {number} seconds  Since the last call. Removes old trails; of a frozen picture those that are switched off. */
   advance(seconds) {
-    if (this.is_frozen) return;
-    this.now += seconds;
+    if (!this.is_frozen) this.now += seconds;
     let old = 0;
-    while (old < this.shown.length - 1 && this.now - this.shown[old].born > this.trail_s) old++;
+    while (old < this.shown.length - 1 && this.now - this.shown[old].born >= this.trail_s) old++;
     if (old > 0) this.shown.splice(0, old);
     // Trails fade with time, and removed ones must disappear.
-    if (old > 0 || this.shown.length > 1) this.version++;
+    if (old > 0 || (this.shown.length > 1 && !this.is_frozen)) this.version++;
   }
 
   /** Whether the picture is in the map. */
