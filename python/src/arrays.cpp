@@ -43,25 +43,27 @@ nb::object make_dtype(const nb::module_& module, std::initializer_list<field> fi
 }  // namespace
 
 buffer::buffer(nb::handle object, bool writable) {
-  if (PyObject_GetBuffer(object.ptr(), &view_, writable ? PyBUF_WRITABLE : PyBUF_SIMPLE) != 0) {
+  const int flags = writable ? PyBUF_WRITABLE : PyBUF_SIMPLE;
+  if (in_python([&] { return PyObject_GetBuffer(object.ptr(), &view_, flags); }) != 0)
     throw nb::python_error();
-  }
 }
 
 nb::handle dtype_of(element what) { return numpy->dtypes[static_cast<std::size_t>(what)]; }
 
 nb::object contiguous(nb::handle given, element type) {
-  const nb::handle wanted = dtype_of(type);
-  const nb::object found = given.attr("dtype");
-  if (!found.is(wanted) && !found.equal(wanted)) {
-    const std::string text = "an array with the dtype " + std::string(nb::str(wanted).c_str()) +
-                             " is needed, not " + nb::str(found).c_str();
-    throw nb::type_error(text.c_str());
-  }
-  nb::object made = numpy->contiguous(given);
-  const auto address = reinterpret_cast<std::uintptr_t>(buffer(made).read().data());
-  const std::size_t alignment = type == element::single ? alignof(float) : alignof(point);
-  return address % alignment == 0 ? made : made.attr("copy")();
+  return in_python([&]() -> nb::object {
+    const nb::handle wanted = dtype_of(type);
+    const nb::object found = given.attr("dtype");
+    if (!found.is(wanted) && !found.equal(wanted)) {
+      const std::string text = "an array with the dtype " + std::string(nb::str(wanted).c_str()) +
+                               " is needed, not " + nb::str(found).c_str();
+      throw nb::type_error(text.c_str());
+    }
+    nb::object made = numpy->contiguous(given);
+    const auto address = reinterpret_cast<std::uintptr_t>(buffer(made).read().data());
+    const std::size_t alignment = type == element::single ? alignof(float) : alignof(point);
+    return address % alignment == 0 ? made : made.attr("copy")();
+  });
 }
 
 nb::object new_array(element type, std::size_t count, std::size_t columns) {

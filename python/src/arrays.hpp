@@ -17,6 +17,7 @@
 #include "g4lidar/core/bytes.hpp"
 #include "g4lidar/motion.hpp"
 #include "g4lidar/point.hpp"
+#include "gil.hpp"
 
 namespace g4lidar::python {
 
@@ -132,7 +133,7 @@ struct type_caster<g4lidar::python::array<Element>> {
           const_name("numpy.typing.NDArray[numpy.void]")))
 
   bool from_python(handle given, std::uint8_t, cleanup_list*) noexcept {
-    if (!hasattr(given, "dtype")) return false;
+    if (!g4lidar::python::in_python([&] { return hasattr(given, "dtype"); })) return false;
     value.object = borrow(given);
     return true;
   }

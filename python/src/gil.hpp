@@ -14,6 +14,7 @@ namespace g4lidar::python {
 /// Calls what waits for the GIL, or runs code in Python, which gives it to others now and then. If the interpreter has
 /// ended by then, Python ends the thread by unwinding it, which ends the program in functions of C++ that do not throw,
 /// or catch all: the thread stays here instead. Not inline: else these callers end the program.
+/// What nanobind calls while it converts arguments (`__float__`, `__getitem__`) is not covered.
 template <class Call>
 [[gnu::noinline]] decltype(auto) in_python(const Call& call) {
   try {

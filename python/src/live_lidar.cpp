@@ -5,6 +5,7 @@
 
 #include "g4lidar/core/wall_clock.hpp"
 #include "g4lidar/transport/transport.hpp"
+#include "gil.hpp"
 #include "reading_thread.hpp"
 
 namespace g4lidar::python {
@@ -24,7 +25,8 @@ std::vector<live_lidar*>& all_lidars() {
 bool program_ends = false;
 
 bool is_error(const nb::python_error& raised, const char* name) {
-  return raised.matches(nb::module_::import_("g4lidar.errors").attr(name));
+  return in_python(
+      [&] { return raised.matches(nb::module_::import_("g4lidar.errors").attr(name)); });
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include <variant>
 
 #include "errors.hpp"
+#include "gil.hpp"
 
 namespace g4lidar::python {
 namespace {
@@ -58,8 +59,10 @@ void add(sim::setup& setup, const std::string& name, nb::handle value) {
 void make_simulator(simulator* made, const std::vector<std::string>& faults, bool virtual_time,
                     const nb::kwargs& options) {
   sim::setup setup;
-  for (const std::string& each : faults) add(setup, "fault", nb::str(each.c_str()));
-  for (const auto& [name, value] : options) add(setup, nb::cast<std::string>(name), value);
+  in_python([&] {  // values may be objects with functions in Python
+    for (const std::string& each : faults) add(setup, "fault", nb::str(each.c_str()));
+    for (const auto& [name, value] : options) add(setup, nb::cast<std::string>(name), value);
+  });
   if (const auto wrong = sim::problem_with(setup.device); !wrong.empty())
     raise_bad_option(std::string(wrong));
   new (made) simulator(setup, virtual_time);

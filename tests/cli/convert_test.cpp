@@ -283,20 +283,36 @@ TEST_F(Convert, FilesWithoutUsableData_AreRefused) {
   expect_refused({path("text.bin"), path("out.csv"), "--from-format", "mcap"}, 10, "text.bin");
 }
 
-TEST_F(Convert, APartThatBeginsAfterTheEnd_ReplacesNothing) {
+TEST_F(Convert, NothingToWrite_ReplacesNothing) {
   raw("3");
   convert("raw.bin", "walk.mcap");
   convert("raw.bin", "a.csv");
-  for (const char* const in : {"raw.bin", "walk.mcap", "a.csv"}) {
-    for (const char* const out : {"b.csv", "b.npy", "b.bin", "b.mcap"}) {
-      if (in == std::string("a.csv") && out != std::string("b.csv")) continue;
-      cli::write_file(path(out), "good");
-      const outcome done = run({"convert", path(in), path(out), "--force", "--from", "99s"});
-      EXPECT_EQ(done.code, 10) << in << out << done.err;
-      EXPECT_THAT(done.err, HasSubstr("from that time on")) << in << out;
-      EXPECT_EQ(text(out), "good") << in << out;
+  cli::write_file(path("empty.bin"), "");
+  cli::write_file(path("piece.bin"), text("raw.bin").substr(0, 2000));
+  const std::vector<std::vector<std::string>> ranges{
+      {"--from", "99s"}, {"--to", "0s"}, {"--from", "2s", "--to", "1s"}};
+  const auto expect_kept = [&](const std::string& in, const std::string& out,
+                               const std::vector<std::string>& more) {
+    cli::write_file(path(out), "good");
+    std::vector<std::string> words{"convert", path(in), path(out), "--force"};
+    words.insert(words.end(), more.begin(), more.end());
+    const outcome done = run(words);
+    EXPECT_NE(done.code, 0) << in << out << done.err;
+    EXPECT_EQ(cli::lines_of(done.err.substr(done.err.find("g4-dump: "))).size(), 1U) << done.err;
+    EXPECT_EQ(text(out), "good") << in << out;
+  };
+  for (const std::string out : {"b.csv", "b.npy", "b.pcd", "b.bin", "b.mcap"}) {
+    for (const auto& range : ranges) {
+      for (const std::string in : {"raw.bin", "walk.mcap"}) expect_kept(in, out, range);
+      if (out != "b.mcap" && out != "b.bin") expect_kept("a.csv", out, range);
     }
+    expect_kept("empty.bin", out, {});
   }
+  for (const std::string out : {"b.pcd", "b.carmen"}) expect_kept("piece.bin", out, {});
+  expect_kept("raw.bin", "b.csv", {"--scans", "--from", "2990ms"});
+  cli::write_file(path("old.mcap"), "good");
+  EXPECT_EQ(run({"record", path("empty.bin"), "-o", path("old.mcap"), "--force"}).code, 10);
+  EXPECT_EQ(text("old.mcap"), "good");
 }
 
 TEST_F(Convert, ARecordingThatIsCutBeforeItsPackets_NamesNoModel) {

@@ -171,11 +171,13 @@ void scan_publisher::on_state(std::size_t lidar, reader_state state,
   const served_lidar& here = lidars_[lidar];
   const std::string text = why_of(here.options(), why, service_->counts(lidar));
   if (text.empty()) return;
-  logger::verbose(text + '\n');
+  const std::string line = prefix_of(here.name()) + text;
   if (state == reader_state::opening)
-    logger::info(fmt::format("{}{} Trying again.\n", prefix_of(here.name()), text));
+    logger::info(line + " Trying again.\n");
   else if (state == reader_state::ended && lidars_.size() > 1)  // the others go on
-    logger::info(prefix_of(here.name()) + text + '\n');
+    logger::info(line + '\n');
+  else
+    logger::verbose(line + '\n');
 }
 
 void scan_publisher::on_values(std::size_t lidar, const std::string& /*refused*/) {

@@ -51,7 +51,6 @@ std::span<const point> shaping_writer::in_range(std::span<const point> points) {
                         [&](const point& p) { return way_ns(first_ns, p.time_ns) >= since_ns; });
   };
   const auto begin = find(points.begin(), options_.from_ns);
-  is_before_range_ = is_before_range_ && begin == points.end();
   const auto end = find(begin, options_.to_ns);
   done_ = end != points.end();
   return {begin, end};
@@ -91,6 +90,7 @@ void shaping_writer::finish(text_sink& out) {
 
 void shaping_writer::write_stream(std::span<const point> points, text_sink& out) {
   if (points.empty()) return;
+  has_taken_ = true;
   begin(out);
   follow_wall_clock();
   times_.arrived(points.front().time_ns);
@@ -120,17 +120,19 @@ std::span<const point> shaping_writer::timed(std::span<const point> points) {
 void shaping_writer::write_scan(const scan_record& record, text_sink& out) {
   if (done_) return;
   begin(out);
+  const bool is_in_range = in_range(record.scan.points).size() == record.scan.points.size();
   if (record.scan.is_piece() && !options_.partial_scans) {
     ++pieces_;
     return;
   }
   follow_wall_clock();
-  if (in_range(record.scan.points).size() < record.scan.points.size()) return;
+  if (!is_in_range) return;
   const std::optional<pose_2d> robot = pose_at(options_.path, record.time_ns);
   if (options_.on_path_only && !robot) {
     ++off_path_;
     return;
   }
+  has_taken_ = true;
   times_.arrived(record.time_ns);
   scan_times_.arrived(record.time_ns);
   shaper_.shape(record.scan, options_.path);

@@ -67,8 +67,9 @@ class shaping_writer final : public point_writer {
 
   /// Whether nothing more will be written: the count or the end of the range is reached.
   [[nodiscard]] bool is_done() const noexcept { return done_; }
-  /// Whether all points were before the range of time.
-  [[nodiscard]] bool is_before_range() const noexcept { return is_before_range_; }
+  /// Whether there was something to write, before filters: in the range of time, and a whole revolution where only these
+  /// are written.
+  [[nodiscard]] bool has_taken() const noexcept { return has_taken_; }
   /// How many pieces of revolutions were left out.
   [[nodiscard]] std::uint64_t pieces_left_out() const noexcept { return pieces_; }
   /// How many revolutions were left out because the path has no pose for them.
@@ -100,7 +101,7 @@ class shaping_writer final : public point_writer {
   std::optional<std::int64_t> first_ns_;
   bool begun_ = false;
   bool done_ = false;
-  bool is_before_range_ = options_.from_ns > 0;
+  bool has_taken_ = false;
   std::uint64_t records_ = 0;
   std::uint64_t pieces_ = 0;
   std::uint64_t off_path_ = 0;

@@ -40,11 +40,13 @@ class point_run {
       report(source);
       throw;
     }
-    const bool has_packets =
-        counts_of(source).stream.packets > 0 && !to_.writer().is_before_range();
-    if (has_packets || is_live()) to_.commit();
+    // A file is not replaced by one without contents.
+    const bool may_be_empty = common_.output == "-" && options_.source.playback.from_ns <= 0;
+    const bool has_something =
+        counts_of(source).stream.packets > 0 && (may_be_empty || to_.writer().has_taken());
+    if (has_something || is_live()) to_.commit();
     report(source);
-    if (!has_packets && !is_live() && interrupt() == 0 && !to_.out().is_closed())
+    if (!has_something && !is_live() && interrupt() == 0 && !to_.out().is_closed())
       throw why_nothing(source);
     return exit_code_now();
   }
@@ -114,7 +116,9 @@ class point_run {
 
   [[nodiscard]] failure why_nothing(opened_source& source) const {
     const lidar_counts counts = counts_of(source);
-    if (is_raw() && counts.stream.packets == 0)
+    if (counts.stream.packets > 0)
+      return nothing_to_write(title_of_input(common_.source), to_.writer().takes_scans());
+    if (is_raw())
       return without_packets(counts.stream, counts.bytes, source.beginning(),
                              title_of_input(common_.source));
     return no_packet_in(common_.source, options_.source.playback.from_ns > 0);

@@ -18,6 +18,7 @@
 #include "g4lidar/motion/odometry_feed.hpp"
 #include "g4lidar/recording/reader.hpp"
 #include "io/command_files.hpp"
+#include "io/input.hpp"
 #include "io/interrupt.hpp"
 #include "io/output.hpp"
 #include "io/service_watch.hpp"
@@ -66,6 +67,10 @@ class recorder {
  private:
   /// Creates the file before the source is opened, because opening is recorded, too.
   void open() {
+    const std::string& source = job_.common.source;
+    if (kind_of_source(source) == source_kind::raw_bytes &&
+        size_of_file(path_of_source(source)) == 0U)
+      throw without_packets({}, 0, {}, title_of_input(source));
     if (job_.title.empty()) claim_.emplace(job_.path);
     recording_options made = job_.made;
     made.overwrite = made.overwrite || may_replace();

@@ -93,9 +93,10 @@ int convert_text(const point_options& options, text_source form, g4lidar::frame 
             common);
   if (!to.writer().is_done()) way.finish();
   report_text(way, from.title(), which);
-  if (to.writer().is_before_range() && way.points() > 0)
-    throw failure(exit_code::bad_file, from.title() + " holds no point from that time on.");
-  if (way.points() > 0) to.commit();
+  const bool has_something = to.writer().has_taken();
+  if (!has_something && interrupt() == 0)
+    throw nothing_to_write(from.title(), to.writer().takes_scans());
+  if (has_something) to.commit();
   to.report();
   return exit_code_now();
 }

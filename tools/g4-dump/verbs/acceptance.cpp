@@ -287,18 +287,15 @@ command reads. A step that differs makes the exit code 8.)";
 
 verb make_acceptance_verb() {
   const auto options = std::make_shared<acceptance_settings>();
-  option_row json = json_row(*options);
-  json.help = "A JSON object for each step, a line each";
-  option_row time = duration_row(*options);
-  time.help = "Observe the scan for so long (1m)";
   option_row file = text_row("--file", "FILE", "The file for a report (acceptance.mcap)",
                              options->run.file, completion::output);
   return {.name = "acceptance",
           .summary = "Compare a real lidar with the table of models, for a report",
           .arguments = {source_argument(*options)},
           .options = joined(
-              output_rows(*options), json, time, rows_of("Device", {"baud"}, options->expected),
-              row_of("model", options->expected),
+              output_rows(*options), json_row(*options, "A JSON object for each step, a line each"),
+              duration_row(*options, "Observe the scan for so long (1m)"),
+              rows_of("Device", {"baud"}, options->expected), row_of("model", options->expected),
               rows_of("Device", {"probe_all_ports"}, options->expected),
               option_rows{file, flag_row("--alone", "Leave out the steps that need a user",
                                          options->run.is_alone)}),

@@ -172,9 +172,8 @@ int to_bytes(const convert_options& options, file_form form) {
   }
   const std::uint64_t count = form == file_form::recording ? copy_recording(options.points, out)
                                                            : copy_bytes(options.points, out);
-  if (count == 0 && options.range().from_ns > 0 && interrupt() == 0)
-    throw no_packet_in(options.in(), true);
-  out.commit();
+  if (count == 0 && interrupt() == 0) throw nothing_to_write(title_of_input(options.in()), false);
+  if (count > 0) out.commit();
   return exit_code_now();
 }
 
@@ -198,6 +197,7 @@ int to_recording(const convert_options& options) {
   job.title = options.out();
   const recorded_result result = record(job);
   if (result.lidar.stream.packets == 0 && interrupt() == 0) throw why_empty(options, result);
+  if (result.lidar.stream.packets == 0) return exit_code_now();
   out.commit();
   report_counts(result.lidar);
   const std::string path = path_of_source(options.in());
@@ -212,6 +212,8 @@ int run(const convert_options& options) {
   const file_form from = form_of_input(options);
   const file_form to = form_of_output(options);
   check_combination(options, from, to);
+  if (options.range().to_ns <= std::max<std::int64_t>(options.range().from_ns, 0))
+    throw bad_value("--to is not after --from, or after the beginning");
   if (to == file_form::recording) return to_recording(options);
   if (to == file_form::raw_bytes) return to_bytes(options, from);
   return to_points(options, from, to);

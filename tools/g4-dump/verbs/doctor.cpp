@@ -218,17 +218,15 @@ reason.)";
 
 verb make_doctor_verb() {
   const auto options = std::make_shared<doctor_options>();
-  option_row time = duration_row(*options);
-  time.help = "Listen to the scan for so long (5s)";
-  option_row json = json_row(*options);
-  json.help = "A JSON object for each stage, a line each";
   return {
       .name = "doctor",
       .summary = "What is wrong with a lidar, its port or a file, and what to try",
       .arguments = {source_argument(*options)},
       .options = joined(
-          output_rows(*options), json, time, rows_of("Device", {"baud"}, options->expected),
-          row_of("model", options->expected), rows_of("Device", {"listen_only"}, options->expected),
+          output_rows(*options), json_row(*options, "A JSON object for each stage, a line each"),
+          duration_row(*options, "Listen to the scan for so long (5s)"),
+          rows_of("Device", {"baud"}, options->expected), row_of("model", options->expected),
+          rows_of("Device", {"listen_only"}, options->expected),
           rows_of("Device", {"probe_all_ports"}, options->expected), direction_rows(*options),
           in_group(
               "Filters",

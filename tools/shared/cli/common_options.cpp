@@ -64,8 +64,8 @@ option_rows output_rows(common_options& options) {
           force_row()};
 }
 
-option_row duration_row(common_options& options) {
-  return duration_row("-d,--duration", "Stop after this time: 10s, 500ms, 2min", options.duration);
+option_row duration_row(common_options& options, const char* help) {
+  return duration_row("-d,--duration", help, options.duration);
 }
 
 option_rows ending_rows(common_options& options, bool with_idle) {
@@ -200,8 +200,8 @@ option_rows player_rows(double& speed, bool& loops) {
   return joined(rows_of("Recordings", {"speed"}, speed), rows_of("Recordings", {"loop"}, loops));
 }
 
-option_row json_row(common_options& options) {
-  return flag_row("--json", "Write JSON, one object in each line", options.json);
+option_row json_row(common_options& options, const char* help) {
+  return flag_row("--json", help, options.json);
 }
 
 option_row compress_row(packing& into) {

@@ -87,7 +87,8 @@ using shared_options = std::shared_ptr<common_options>;
 /// -o, --force.
 [[nodiscard]] option_rows output_rows(common_options& options);
 /// -d.
-[[nodiscard]] option_row duration_row(common_options& options);
+[[nodiscard]] option_row duration_row(common_options& options,
+                                      const char* help = "Stop after this time: 10s, 500ms, 2min");
 /// -n, -d, --idle.
 [[nodiscard]] option_rows ending_rows(common_options& options, bool with_idle = true);
 /// --fov, --ignore.
@@ -117,7 +118,8 @@ void note_order(scan_order chosen);
 /// --playback-speed and --loop of a recording.
 [[nodiscard]] option_rows player_rows(double& speed, bool& loops);
 /// --json.
-[[nodiscard]] option_row json_row(common_options& options);
+[[nodiscard]] option_row json_row(common_options& options,
+                                  const char* help = "Write JSON, one object in each line");
 /// --compress.
 [[nodiscard]] option_row compress_row(packing& into);
 /// --on-loss with options.on_loss.usual as default, --baud, --model, --zero-angle, --listen, --all-ports.

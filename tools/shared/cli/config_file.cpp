@@ -16,6 +16,7 @@ std::string config_text(std::istream& in, std::string& problem) {
   std::string text(most + 1, '\0');
   in.read(text.data(), static_cast<std::streamsize>(text.size()));
   text.resize(static_cast<std::size_t>(in.gcount()));
+  if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);  // of an editor of Windows
   if (in.bad()) problem = "the file cannot be read";
   if (text.size() > most) problem = "the file is longer than 1 MB";
   return text;

@@ -253,6 +253,12 @@ failure no_packet_in(const std::string& source, bool is_from_a_time) {
                       in_quotes(source), is_from_a_time ? " from that time on." : ".")};
 }
 
+failure nothing_to_write(const std::string& title, bool is_of_scans) {
+  return {exit_code::bad_file,
+          fmt::format("{} has no {} in the time that is wanted. Nothing was written.", title,
+                      is_of_scans ? "whole revolution" : "point")};
+}
+
 failure without_packets(const stream_counts& counts, std::uint64_t bytes,
                         std::span<const std::uint8_t> beginning, const std::string& title) {
   const auto bad = [](const std::string& why) { return failure(exit_code::bad_file, why); };

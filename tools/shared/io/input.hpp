@@ -106,6 +106,9 @@ g4lidar::recording_reader read_items(
 /// The failure of a recording, or of a part that begins after its end, without a packet.
 [[nodiscard]] failure no_packet_in(const std::string& source, bool is_from_a_time);
 
+/// The failure of an input that has nothing to write: no whole revolution if `is_of_scans`, else no point.
+[[nodiscard]] failure nothing_to_write(const std::string& title, bool is_of_scans);
+
 /// The failure of an input whose `bytes` bytes, which begin with `beginning`, contain no packet: why, and what to do.
 [[nodiscard]] failure without_packets(const g4lidar::stream_counts& counts, std::uint64_t bytes,
                                       std::span<const std::uint8_t> beginning,

@@ -2,6 +2,7 @@
 // The output of a writer: a buffer that is passed to the caller when it is full.
 #pragma once
 
+#include <algorithm>
 #include <cassert>
 #include <cstddef>
 #include <memory>
@@ -14,10 +15,10 @@ namespace g4_tool {
 /// thread, allocates on construction.* take() may throw: the writers pass exceptions on.
 class text_sink {
  public:
-  text_sink();
+  text_sink() = default;
   text_sink(const text_sink&) = delete;
   text_sink& operator=(const text_sink&) = delete;
-  virtual ~text_sink();
+  virtual ~text_sink() = default;
 
   /// The maximum argument of room(), in bytes.
   static constexpr std::size_t max_room = 65'536;
@@ -32,7 +33,12 @@ class text_sink {
   void wrote(const char* end) noexcept { used_ = static_cast<std::size_t>(end - buffer_.get()); }
 
   /// Appends `text`.
-  void write(std::string_view text);
+  void write(std::string_view text) {
+    for (; !text.empty(); text.remove_prefix(std::min(text.size(), max_room))) {
+      const std::string_view part = text.substr(0, max_room);
+      wrote(std::ranges::copy(part, room(part.size())).out);
+    }
+  }
   /// Passes everything written so far to take().
   void flush() { take({buffer_.get(), std::exchange(used_, 0)}); }
   /// Whether flush() has anything to pass.
@@ -46,7 +52,7 @@ class text_sink {
  private:
   static constexpr std::size_t capacity = 4 * max_room;
 
-  std::unique_ptr<char[]> buffer_;
+  std::unique_ptr<char[]> buffer_ = std::make_unique_for_overwrite<char[]>(capacity);
   std::size_t used_ = 0;
 };
 
