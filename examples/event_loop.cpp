@@ -49,7 +49,7 @@ int milliseconds_until(std::chrono::steady_clock::time_point deadline) {
 /// Takes every scan and event that has arrived. False: the end.
 bool take_scans(g4lidar::lidar& lidar) {
   while (true) {
-    const auto scan = lidar.next_scan(0ms);
+    const auto scan = lidar.try_scan(0ms);
     if (scan) {
       std::printf("scan %u: %zu points\n", scan->revolution, scan->points.size());
     } else if (scan.error().is_fatal()) {

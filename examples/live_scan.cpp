@@ -46,7 +46,7 @@ int main(int count, char** words) {
   if (auto started = lidar->start(); !started) return report(started.error());
   g4lidar::near_history history;
   while (running) {
-    auto scan = lidar->next_scan(500ms);  // a view, valid until the next call
+    auto scan = lidar->try_scan(500ms);  // a view, valid until the next call
     if (scan) {
       use(*scan, history);
     } else if (scan.error().is_fatal()) {

@@ -109,7 +109,7 @@ int delay(int seconds, std::string_view pace) {
     lidar device = open_and_start(pty.path(), pace);
     opened = steady_ns();
     while (steady_ns() < end) {
-      const auto scan = device.next_scan(500ms);
+      const auto scan = device.try_scan(500ms);
       const std::int64_t now = steady_ns();
       if (!scan) continue;
       if (first == 0) first = now;
@@ -155,7 +155,7 @@ int stream(int seconds, std::string_view pace) {
   {
     lidar device = open_and_start(pty.path(), pace);
     const auto until = [&](std::int64_t time) {
-      while (steady_ns() < time) static_cast<void>(device.next_scan(500ms));
+      while (steady_ns() < time) static_cast<void>(device.try_scan(500ms));
     };
     until(end - (seconds + 1) * second);
     // A tracer sees these two flags and counts between them.
@@ -231,7 +231,7 @@ double driver_rate(std::size_t bytes_wanted, std::int64_t& lost) {
   std::int64_t scans = 0;
   std::int64_t begin = 0;
   while (scans < expected) {
-    const auto scan = device.next_scan(1000ms);
+    const auto scan = device.try_scan(1000ms);
     if (!scan) break;
     if (begin == 0) begin = steady_ns();
     ++scans;
@@ -267,7 +267,7 @@ memory_run read_memory(int scans, int burst, bool is_judged = false,
   memory_run all;
   const std::int64_t begin = steady_ns();
   while (true) {
-    const auto scan = opened->next_scan(1000ms);
+    const auto scan = opened->try_scan(1000ms);
     if (!scan) break;
     all.samples += scan->points.size();
     all.whole += scan->is_whole();

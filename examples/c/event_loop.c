@@ -19,7 +19,7 @@ static int take_scans(g4lidar_lidar* lidar) {
   g4lidar_error why;
   g4lidar_event event;
   const g4lidar_scan* scan;
-  while (g4lidar_next_scan(lidar, 0, &scan, &why) == G4LIDAR_OK) {
+  while (g4lidar_try_scan(lidar, 0, &scan, &why) == G4LIDAR_OK) {
     printf("scan %u: %zu points\n", (unsigned)scan->revolution, scan->point_count);
   }
   while (g4lidar_next_event(lidar, &event) == G4LIDAR_OK) {

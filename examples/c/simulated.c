@@ -57,7 +57,7 @@ int main(void) {
   }
   while (g4lidar_simulator_get_state(simulator)->time_ns < 10000000000LL) {
     const g4lidar_scan* scan;
-    if (g4lidar_next_scan(lidar, 500, &scan, &why) == G4LIDAR_OK) {
+    if (g4lidar_try_scan(lidar, 500, &scan, &why) == G4LIDAR_OK) {
       whole += scan->is_whole;
       if (whole == 1) printf("the nearest obstacle is %.2f m away\n", nearest_m(shaper, scan));
     } else if (why.is_fatal) {

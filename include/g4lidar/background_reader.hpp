@@ -127,7 +127,7 @@ class G4LIDAR_API background_reader {
 
   /// The oldest scan that was not taken yet, with its flags; valid until the next call of
   /// next_scan(). The last four scans are kept; older ones are dropped and counted as
-  /// `scans_missed`. Errors: timeout, with the details of lidar::next_scan(); if the reader has ended, the
+  /// `scans_missed`. Errors: timeout, with the details of lidar::try_scan(); if the reader has ended, the
   /// error of failed(); after stop(), not_scanning.
   [[nodiscard]] view_result<scan> next_scan(lidar::milliseconds timeout);
 

@@ -157,8 +157,8 @@ template <class T>
 using result = tl::expected<T, error>;
 
 /// A result whose value is a view into the object that returned it. In a variable it is used like
-/// any result. A temporary gives only a copy of the view: `for (auto& p : *lidar->next_scan(2s))`
-/// is correct, and `lidar->next_scan(2s)->points`, a use after the end of the view, does not
+/// any result. A temporary gives only a copy of the view: `for (auto& p : *lidar->try_scan(2s))`
+/// is correct, and `lidar->try_scan(2s)->points`, a use after the end of the view, does not
 /// compile.
 template <class View>
 class view_result : public result<View> {

@@ -94,13 +94,15 @@ class G4LIDAR_API lidar {
   /// power-down protection the device stops 3 s after the last keep-alive.) Never waits.
   void release() noexcept;
 
-  /// The next revolution; valid until the next call of any function except counts(). Returns within
-  /// the timeout, also while the motor spins up or a lost lidar is looked for: error::detail() is
-  /// then spinning_up or searching. Errors: timeout (try again), not_scanning, reconnecting. A fatal
-  /// error ends the scan. With reconnecting on, a loss is not fatal: the waiting call returns
-  /// reconnecting at once, next_event() reports the loss, and scans continue when the device is back.
-  [[nodiscard]] view_result<scan> next_scan(milliseconds timeout);
-  /// The same for a loop: it waits longer while no scan is due. While the motor spins up after a
+  /// The next revolution, if it is complete within the timeout; valid until the next call of any
+  /// function except counts(). Returns within the timeout in every state, also while the motor spins
+  /// up or a lost lidar is looked for: error::detail() is then spinning_up or searching. So an error
+  /// is no reason to end a loop, unless it is fatal: see wait_scan(). Errors: timeout (try again),
+  /// not_scanning, reconnecting. A fatal error ends the scan. With reconnecting on, a loss is not
+  /// fatal: the waiting call returns reconnecting at once, next_event() reports the loss, and scans
+  /// continue when the device is back.
+  [[nodiscard]] view_result<scan> try_scan(milliseconds timeout);
+  /// The next revolution, for a loop: it waits longer while no scan is due. While the motor spins up after a
   /// start, a restart or a reconnect, it waits until the first scan, at most 10 s or the timeout, if
   /// that is longer. With reconnecting on it waits without limit while the lidar is lost. So it
   /// returns an error only at the end of a file (end_of_input), at a fatal error, when it is woken
@@ -111,7 +113,7 @@ class G4LIDAR_API lidar {
   /// The same as a range: `for (const auto& scan : lidar.scans(500ms))`; see scan_range.
   [[nodiscard]] scan_range scans(milliseconds timeout) & noexcept;
   /// All points since the last call, at least one; valid until the next call. The first call begins
-  /// with the current revolution; earlier points count as missed. Errors: as next_scan().
+  /// with the current revolution; earlier points count as missed. Errors: as try_scan().
   [[nodiscard]] view_result<std::span<const point>> next_points(milliseconds timeout);
 
   /// Every point, for readers in any thread. The ring is written from the first call on, so it costs
@@ -191,7 +193,7 @@ class G4LIDAR_API lidar {
 };
 
 /// A lidar in an event loop of the program, which waits for other things, too: poll native_handle()
-/// for reading until next_deadline(), then call process(), which never waits, or next_scan(0ms) until
+/// for reading until next_deadline(), then call process(), which never waits, or try_scan(0ms) until
 /// it times out. *Single thread*: that of the lidar.
 class G4LIDAR_API lidar_event_loop {
  public:
@@ -201,7 +203,7 @@ class G4LIDAR_API lidar_event_loop {
   [[nodiscard]] std::chrono::steady_clock::time_point next_deadline() const noexcept;
   /// The same in nanoseconds of std::chrono::steady_clock; never_ns of transport/transport.hpp for never.
   [[nodiscard]] std::int64_t next_deadline_ns() const noexcept;
-  /// Processes what has arrived. Scans that next_scan() does not take are counted as missed.
+  /// Processes what has arrived. Scans that try_scan() does not take are counted as missed.
   [[nodiscard]] result<void> process();
   /// For a loop that waits like wait_scan(): for how long from now no scan is due. 0: one is due, and
   /// a wait ends at its timeout; milliseconds::max() while a lost lidar is looked for.

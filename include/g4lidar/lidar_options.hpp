@@ -92,7 +92,7 @@ struct lidar_options {
   std::optional<g4lidar::zero_angle> zero_angle{};
 
   bool reconnect = false;      ///< Whether to reconnect after a loss; see lidar::next_event().
-  bool partial_scans = false;  ///< Whether next_scan() also gives pieces: scan::is_piece().
+  bool partial_scans = false;  ///< Whether try_scan() also gives pieces: scan::is_piece().
   lidar_tuning tuning{};       ///< Times and speeds of the connection.
 
   playback_options playback{};  ///< How a file is played.

@@ -95,7 +95,7 @@ void bind_parts(nb::module_& module) {
       .def(
           "__next__", [](scans& self) { return self.lidar().next_in_loop(self.loop, self.newest); },
           nb::sig("def __next__(self) -> Scan"),
-          "The next scan. Raises Timeout, and the errors of Lidar.next_scan().")
+          "The next scan. Raises Timeout, and the errors of Lidar.try_scan().")
       .def(
           "_advance",
           [](scans& self, double slice) {
@@ -167,12 +167,13 @@ void bind_control(Class& made, keyword_types<Wanted...>, std::index_sequence<Ind
 template <class Class>
 void bind_reading(Class& made) {
   made.def(
-          "next_scan",
+          "try_scan",
           [](live_lidar& lidar, double timeout) {
-            return lidar.next_scan(in_milliseconds(timeout));
+            return lidar.try_scan(in_milliseconds(timeout));
           },
-          "timeout"_a = 2.0, nb::sig("def next_scan(self, timeout: float = 2.0) -> Scan"),
-          "The next revolution. Waits at most `timeout` seconds, without the GIL. Raises Timeout "
+          "timeout"_a = 2.0, nb::sig("def try_scan(self, timeout: float = 2.0) -> Scan"),
+          "The next revolution, if it is complete within `timeout` seconds; waits without the GIL. "
+          "Raises Timeout "
           "(try again), NotScanning, "
           "Reconnecting, EndOfInput at the end of a recording, and the fatal errors of "
           "docs/errors.md.")
@@ -209,7 +210,7 @@ void bind_reading(Class& made) {
           "lidar, without a thread. start() and close() block.")
       .def("next_points", &next_points, "timeout"_a = 2.0,
            "All points since the last call, at least one, as Scan.points. Waits and raises like "
-           "next_scan().");
+           "try_scan().");
 }
 
 template <class Class>

@@ -162,14 +162,14 @@ nb::object live_lidar::take_scan(const Wait& wait) {
   });
 }
 
-nb::object live_lidar::next_scan(milliseconds timeout, bool may_time_out) {
+nb::object live_lidar::try_scan(milliseconds timeout, bool may_time_out) {
   const auto due = std::chrono::steady_clock::now() + timeout;
   return take_scan([&](lidar& on) -> result<std::optional<scan>> {
     // Less after a signal, but for clocks other than that of the caller.
     const auto left = counts_time(on)
                           ? timeout
                           : std::chrono::ceil<milliseconds>(due - std::chrono::steady_clock::now());
-    const auto found = on.next_scan(std::max(left, milliseconds(0)));
+    const auto found = on.try_scan(std::max(left, milliseconds(0)));
     if (found) return *found;
     if (may_time_out && found.error() == problem::timeout) return std::nullopt;
     return tl::unexpected(found.error());
@@ -180,7 +180,7 @@ nb::object live_lidar::next_scan(milliseconds timeout, bool may_time_out) {
 nb::object live_lidar::newer(nb::object found) {
   try {
     while (!look([](lidar& on) { return on.player() != nullptr && on.player()->speed() == 0; })) {
-      nb::object next = next_scan(milliseconds(0), true);
+      nb::object next = try_scan(milliseconds(0), true);
       if (next.is_none()) break;
       found = std::move(next);
       ++dropped_;
@@ -194,7 +194,7 @@ nb::object live_lidar::newer(nb::object found) {
 
 nb::object live_lidar::poll_scan(bool newest) {
   try {
-    nb::object found = next_scan(milliseconds(0), true);
+    nb::object found = try_scan(milliseconds(0), true);
     return newest && !found.is_none() ? newer(std::move(found)) : found;
   } catch (nb::python_error& raised) {
     if (!is_error(raised, "Reconnecting")) throw;

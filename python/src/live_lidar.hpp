@@ -93,7 +93,7 @@ class live_lidar {
   /// Wakes a waiting call of another thread.
   void wake();
   /// The next scan; empty at the timeout, if `may_time_out`.
-  [[nodiscard]] nb::object next_scan(milliseconds timeout, bool may_time_out = false);
+  [[nodiscard]] nb::object try_scan(milliseconds timeout, bool may_time_out = false);
   /// For a loop: a scan, or None if none came within `slice`, and the loop goes on. Raises StopIteration at the end of a
   /// recording, and after close(). With `newest` only the newest complete scan.
   [[nodiscard]] nb::object advance(scan_loop& loop, milliseconds slice, bool newest);

@@ -48,10 +48,9 @@ void bind_player(nb::module_& module, nb::class_<live_lidar>& bound) {
       module, "Player",
       "Plays the file of a lidar: Lidar.player. Any thread. After Lidar.close() everything raises "
       "Gone.")
-      .def(
-          "pause", &pause, "pauses"_a = true,
-          "While it is paused nothing is read: next_scan() waits until its timeout, a loop without "
-          "limit.")
+      .def("pause", &pause, "pauses"_a = true,
+           "While it is paused nothing is read: try_scan() waits until its timeout, a loop without "
+           "limit.")
       .def_prop_ro("is_paused", &is_paused)
       .def_prop_rw(
           "speed",

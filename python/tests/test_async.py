@@ -81,7 +81,7 @@ def test_a_task_that_is_cancelled_leaves_the_lidar_open(g4_simulator: Make) -> N
             waiting.cancel()
             with pytest.raises(asyncio.CancelledError):
                 await waiting
-            assert len(lidar.next_scan(20)) > 100
+            assert len(lidar.try_scan(20)) > 100
 
     in_loop(work)
 

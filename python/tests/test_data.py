@@ -258,7 +258,7 @@ def test_doctor_takes_the_file_that_open_takes(g4_simulator: Make, tmp_path: Pat
     path = tmp_path / "walk.mcap"
     with g4lidar.open(g4_simulator(), record=path) as lidar:
         lidar.start()
-        lidar.next_scan(20)
+        lidar.try_scan(20)
     by_name = [(report.stage, report.verdict) for report in g4lidar.doctor(path)]
     assert by_name == [(report.stage, report.verdict) for report in g4lidar.doctor(f"file:{path}")]
     assert ("permission", "skipped") in by_name

@@ -4,8 +4,8 @@ import pytest
 from conftest import PATIENCE, start_program
 
 RUNNING = {
-    "next_scan": "real.next_scan(1000)",
-    "virtual_scan": "lidar.next_scan(1)",
+    "try_scan": "real.try_scan(1000)",
+    "virtual_scan": "lidar.try_scan(1)",
     "simulator": "simulated.now_ns",
     "decode": "g4lidar.decode(zeros)",
     "open": "g4lidar.open(simulated).close()",

@@ -69,7 +69,7 @@ def test_an_impossible_value_is_repeated(g4_simulator: Make) -> None:
         (lambda: g4lidar.fill_grid(points, 0), "1 to 65536 ranges, not 0"),
         (lambda: g4lidar.mark_isolated(points, window=17), "1 to 16, not 17"),
         (lambda: g4lidar.ScanShaper(excluded=256), "not 256"),
-        (lambda: g4lidar.open(g4_simulator()).next_scan(-2), "0 or more, not -2.0"),
+        (lambda: g4lidar.open(g4_simulator()).try_scan(-2), "0 or more, not -2.0"),
     ):
         with pytest.raises(ValueError, match=words):
             call()
@@ -84,7 +84,7 @@ def test_a_mistake_in_a_simulation() -> None:
 
 def test_setting_during_a_scan(g4_lidar: g4lidar.Lidar) -> None:
     g4_lidar.start()
-    g4_lidar.next_scan()
+    g4_lidar.try_scan()
     with pytest.raises(errors.Scanning):
         g4_lidar.set(frequency_hz=8)
     g4_lidar.set(frequency_hz=8, interrupt=True)
@@ -93,7 +93,7 @@ def test_setting_during_a_scan(g4_lidar: g4lidar.Lidar) -> None:
 
 def test_no_scan_was_started(g4_lidar: g4lidar.Lidar) -> None:
     with pytest.raises(errors.NotScanning):
-        g4_lidar.next_scan()
+        g4_lidar.try_scan()
 
 
 @pytest.mark.g4(faults=["unplug@3s"])

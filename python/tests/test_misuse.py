@@ -81,18 +81,18 @@ def test_closing_a_simulator_that_another_thread_uses() -> None:
 def test_a_lidar_keeps_its_simulator() -> None:
     with g4lidar.open(g4lidar.Simulator(virtual_time=False)) as lidar:
         lidar.start()
-        assert len(lidar.next_scan(20)) > 100
+        assert len(lidar.try_scan(20)) > 100
 
 
 def test_close_removes_the_port_of_an_open_lidar() -> None:
     simulated = g4lidar.Simulator(virtual_time=False)
     lidar = g4lidar.open(simulated)
     lidar.start()
-    lidar.next_scan(20)
+    lidar.try_scan(20)
     simulated.close()
     with pytest.raises(g4lidar.errors.Gone):
         while True:
-            lidar.next_scan(20)
+            lidar.try_scan(20)
     with pytest.raises(RuntimeError, match="closed"):
         simulated.now_ns  # noqa: B018
 
@@ -125,7 +125,7 @@ def test_signals_if_another_thread_imported_the_module() -> None:
         threading.Timer(1, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
         begin = time.monotonic()
         try:
-            lidar.next_scan(40)
+            lidar.try_scan(40)
         except KeyboardInterrupt:
             print(time.monotonic() - begin < 20)
     """)
@@ -139,14 +139,14 @@ def test_a_handler_that_restores_the_default() -> None:
         import os, signal, threading
         lidar = g4lidar.open("sim:")
         lidar.start()
-        lidar.next_scan(20)
+        lidar.try_scan(20)
         def handle(*_):
             print("first", flush=True)
             signal.signal(signal.SIGTERM, signal.SIG_DFL)
         signal.signal(signal.SIGTERM, handle)
         threading.Timer(0.5, lambda: os.kill(os.getpid(), signal.SIGTERM)).start()
         for _ in range(10):
-            lidar.next_scan(20)
+            lidar.try_scan(20)
         assert signal.getsignal(signal.SIGTERM) == signal.SIG_DFL
         os.kill(os.getpid(), signal.SIGTERM)
         print("still there")
@@ -157,7 +157,7 @@ def test_a_handler_that_restores_the_default() -> None:
 
 def test_misaligned_arrays_are_copied(g4_lidar: g4lidar.Lidar) -> None:
     g4_lidar.start()
-    points = g4_lidar.next_scan().points
+    points = g4_lidar.try_scan().points
     shifted = np.frombuffer(b"\0" + points.tobytes(), dtype=g4lidar.POINT_DTYPE, offset=1)
     assert g4lidar.to_xy(shifted).tobytes() == g4lidar.to_xy(points).tobytes()
     room = np.frombuffer(bytearray(24 * 200 + 1), dtype=g4lidar.POINT_DTYPE, offset=1)

@@ -39,7 +39,7 @@ def test_waiting_releases_the_gil(g4_simulator: Make) -> None:
         done = threading.Event()
         other = threading.Thread(target=count)
         other.start()
-        lidar.next_scan(20)
+        lidar.try_scan(20)
         done.set()
         other.join()
     assert turns > 20
@@ -71,7 +71,7 @@ def test_threads_share_a_lidar(g4_simulator: Make) -> None:
 
         def read() -> None:
             for _ in range(5):
-                revolutions.append(lidar.next_scan(20).revolution)
+                revolutions.append(lidar.try_scan(20).revolution)
 
         threads = [threading.Thread(target=read) for _ in range(3)]
         for thread in threads:
@@ -88,7 +88,7 @@ def test_close_and_wake_end_a_wait_of_another_thread(g4_simulator: Make) -> None
 
         def wait() -> None:
             try:
-                lidar.next_scan(1000)
+                lidar.try_scan(1000)
             except errors.Cancelled:
                 ends.append("cancelled")
             ends.append(f"{len(list(lidar.scans(timeout=None)))} scans")
@@ -108,7 +108,7 @@ WAITING = """
         lidar.start()
         try:
             print("waits", flush=True)
-            lidar.next_scan(1000)
+            lidar.try_scan(1000)
         except KeyboardInterrupt:
             print("interrupted", flush=True)
             raise
@@ -161,7 +161,7 @@ def test_handler_that_does_not_raise_continues_the_wait(g4_simulator: Make) -> N
         with g4lidar.open(sys.argv[1], stall_time=60) as lidar:
             lidar.start()
             print("waits", flush=True)
-            print(len(lidar.next_scan(1000)) > 100, len(lidar.next_scan(1000)) > 100, flush=True)
+            print(len(lidar.try_scan(1000)) > 100, len(lidar.try_scan(1000)) > 100, flush=True)
     """, simulated.path)
     assert program.stdout is not None
     assert program.stdout.readline() == "waits\n"
@@ -176,7 +176,7 @@ def test_the_end_of_a_program_stops_the_lidar(g4_simulator: Make) -> None:
     program = start_program("""
         kept = g4lidar.open(sys.argv[1])
         kept.start()
-        kept.next_scan(20)
+        kept.try_scan(20)
         sys.own = kept
         raise SystemExit(3)
     """, simulated.path)
@@ -192,10 +192,10 @@ def test_a_child_after_fork_leaves_the_lidar_alone(g4_simulator: Make) -> None:
         import os
         lidar = g4lidar.open(sys.argv[1])
         lidar.start()
-        lidar.next_scan(20)
+        lidar.try_scan(20)
         child = os.fork()
         if child == 0:
-            for call in (lidar.next_scan, lidar.stop, lidar.close, lidar.counts):
+            for call in (lidar.try_scan, lidar.stop, lidar.close, lidar.counts):
                 try:
                     call()
                 except RuntimeError as refused:
@@ -203,7 +203,7 @@ def test_a_child_after_fork_leaves_the_lidar_alone(g4_simulator: Make) -> None:
             del lidar
             sys.exit(7)  # with all destructors
         print(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]))
-        print(lidar.is_scanning, len(lidar.next_scan(20)) > 100, len(lidar.next_scan(20)) > 100)
+        print(lidar.is_scanning, len(lidar.try_scan(20)) > 100, len(lidar.try_scan(20)) > 100)
     """, simulated.path)
     out, err = program.communicate(timeout=PATIENCE)
     assert out == "7\nTrue True True\n", err

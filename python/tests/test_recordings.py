@@ -67,7 +67,7 @@ def test_seek_in_an_open_recording(recorded: tuple[Path, list[g4lidar.Scan]]) ->
         player.seek(2)
         assert player.position == pytest.approx(2)
         with pytest.raises(errors.NotScanning):
-            lidar.next_scan()
+            lidar.try_scan()
         lidar.start()
         with g4lidar.open(path, begin=2, end=3) as other:
             other.start()
@@ -75,7 +75,7 @@ def test_seek_in_an_open_recording(recorded: tuple[Path, list[g4lidar.Scan]]) ->
         assert [scan.points.tobytes() for scan in lidar.scans()] == wanted
         for seconds in (2.5, 0.0, 1.5):  # after the end, back, and ahead
             player.seek(seconds)
-            found = lidar.next_scan()
+            found = lidar.try_scan()
             assert 0 <= found.time_ns - begin_of(path) - seconds * 1e9 < 0.8e9
         player.seek(0)
         # In a loop.
@@ -90,7 +90,7 @@ def test_seek_in_an_open_recording(recorded: tuple[Path, list[g4lidar.Scan]]) ->
                 player.seek(wrong)
         player.seek(1e6)  # the end
         with pytest.raises(errors.EndOfInput):
-            lidar.next_scan()
+            lidar.try_scan()
     assert lidar.player is None
     with pytest.raises(errors.Gone):
         player.seek(0)
@@ -239,7 +239,7 @@ def test_a_writer_refuses_impossible_odometry(tmp_path: Path, wrong: float, plac
 
 def test_a_closed_writer_refuses_more(tmp_path: Path, g4_lidar: g4lidar.Lidar) -> None:
     g4_lidar.start()
-    scan = g4_lidar.next_scan()
+    scan = g4_lidar.try_scan()
     writer = g4lidar.RecordingWriter(tmp_path / "a.mcap")
     writer.from_device(b"first", 1)
     writer.close()

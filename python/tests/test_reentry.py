@@ -29,7 +29,7 @@ def test_a_handler_uses_the_lidar_whose_call_it_interrupts() -> None:
         end = time.monotonic() + 4
         while time.monotonic() < end:
             try:
-                lidar.next_scan(0.0)
+                lidar.try_scan(0.0)
             except g4lidar.errors.Timeout:
                 pass
         signal.setitimer(signal.ITIMER_REAL, 0)
@@ -39,12 +39,12 @@ def test_a_handler_uses_the_lidar_whose_call_it_interrupts() -> None:
     assert out == "True\n", err
 
 
-@pytest.mark.parametrize("inner", ["close", "stop", "counts", "next_scan", "player", "release", "events", "fileno"])
+@pytest.mark.parametrize("inner", ["close", "stop", "counts", "try_scan", "player", "release", "events", "fileno"])
 def test_a_handler_calls_anything_during_anything(inner: str) -> None:
     program = start_program("""
         import signal, time
         lidar = g4lidar.open("sim:?silence_ns=60s", stall_time=60)
-        calls = {"next_scan": lambda: lidar.next_scan(0.01), "player": lambda: lidar.player}
+        calls = {"try_scan": lambda: lidar.try_scan(0.01), "player": lambda: lidar.player}
         inner = calls.get(sys.argv[1]) or getattr(lidar, sys.argv[1])
         handled = []
         def handle(*_):
@@ -54,7 +54,7 @@ def test_a_handler_calls_anything_during_anything(inner: str) -> None:
                 pass
             handled.append(1)
         signal.signal(signal.SIGALRM, handle)
-        for outer in (lidar.start, lambda: lidar.next_scan(1), lidar.stop, lidar.counts, lidar.start, lidar.close):
+        for outer in (lidar.start, lambda: lidar.try_scan(1), lidar.stop, lidar.counts, lidar.start, lidar.close):
             signal.setitimer(signal.ITIMER_REAL, 0.01, 0.1)
             try:
                 outer()
@@ -83,7 +83,7 @@ def test_the_collector_frees_another_lidar_of_the_same_simulator() -> None:
                 del cycle
                 try:
                     lidar.start()
-                    lidar.next_scan(0.0)
+                    lidar.try_scan(0.0)
                 except g4lidar.Error:
                     pass
         print("ended")
@@ -250,7 +250,7 @@ def test_a_port_can_be_opened_after_an_interrupt(g4_simulator: Make) -> None:
             try:
                 with g4lidar.open(sys.argv[1]) as lidar:
                     lidar.start()
-                    print(len(lidar.next_scan(20)) > 100)
+                    print(len(lidar.try_scan(20)) > 100)
                 break
             except g4lidar.errors.Busy:
                 time.sleep(0.05)

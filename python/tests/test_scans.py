@@ -215,16 +215,16 @@ def test_a_lost_lidar_is_waited_for_without_limit(g4_simulator: Make) -> None:
             scans_of(lidar, 40)
 
 
-def test_an_error_of_next_scan_states_what_is_awaited(g4_simulator: Make) -> None:
+def test_an_error_of_try_scan_states_what_is_awaited(g4_simulator: Make) -> None:
     with g4lidar.open(g4_simulator(faults=["unplug@4s+60s"]), reconnect=True) as lidar:
         lidar.start()
         with pytest.raises(errors.Timeout, match="the motor spins up"):
-            lidar.next_scan(0.01)
+            lidar.try_scan(0.01)
         with pytest.raises(errors.Reconnecting):
             while True:
-                lidar.next_scan(1)
+                lidar.try_scan(1)
         with pytest.raises(errors.Timeout, match="the lidar was lost") as caught:
-            lidar.next_scan(1)
+            lidar.try_scan(1)
         assert "unplug" not in str(caught.value)
 
 
@@ -257,7 +257,7 @@ def test_with_stops_the_motor(g4_simulator: Make) -> None:
         assert simulated.motor_turns
     assert not simulated.is_scanning
     with pytest.raises(errors.Gone):
-        lidar.next_scan()
+        lidar.try_scan()
     assert list(lidar.scans()) == []
     lidar.close()
 
@@ -280,6 +280,6 @@ def test_truth_is_where_the_points_are(g4_simulator: Make) -> None:
 def test_stamp_is_the_wall_clock(g4_simulator: Make) -> None:
     with g4lidar.open(g4_simulator(virtual_time=False)) as lidar:
         lidar.start()
-        scan = lidar.next_scan(10)
+        scan = lidar.try_scan(10)
         now = time.time()
         assert now - 10 < scan.stamp < now

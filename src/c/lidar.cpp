@@ -188,9 +188,9 @@ void g4lidar_release(g4lidar_lidar* lidar) {
   if (lidar != nullptr) lidar->made->release();
 }
 
-int g4lidar_next_scan(g4lidar_lidar* lidar, int timeout_ms, const g4lidar_scan** scan,
-                      g4lidar_error* error) {
-  return take_scan(lidar, &lidar::next_scan, timeout_ms, scan, error);
+int g4lidar_try_scan(g4lidar_lidar* lidar, int timeout_ms, const g4lidar_scan** scan,
+                     g4lidar_error* error) {
+  return take_scan(lidar, &lidar::try_scan, timeout_ms, scan, error);
 }
 
 int g4lidar_wait_scan(g4lidar_lidar* lidar, int timeout_ms, const g4lidar_scan** scan,

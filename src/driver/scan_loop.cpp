@@ -43,7 +43,7 @@ view_result<scan> lidar::wait_scan(milliseconds timeout) {
   return *next;
 }
 
-view_result<scan> lidar::next_scan(milliseconds timeout) {
+view_result<scan> lidar::try_scan(milliseconds timeout) {
   if (!driver_) return moved_from();
   const std::int64_t until_ns = deadline_after_ns(driver_->source(), timeout);
   const auto found =

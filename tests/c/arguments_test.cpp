@@ -30,7 +30,7 @@ TEST(CArguments, NullIsAnError) {
   EXPECT_TRUE(is_refused(g4lidar_stop(nullptr, &why)));
   EXPECT_TRUE(is_refused(g4lidar_close(nullptr, &why)));
   EXPECT_TRUE(is_refused(g4lidar_process(nullptr, &why)));
-  EXPECT_TRUE(is_refused(g4lidar_next_scan(nullptr, 0, &scan, &why)));
+  EXPECT_TRUE(is_refused(g4lidar_try_scan(nullptr, 0, &scan, &why)));
   EXPECT_TRUE(is_refused(g4lidar_wait_scan(nullptr, 0, &scan, &why)));
   EXPECT_TRUE(is_refused(g4lidar_next_points(nullptr, 0, &points, &count, &why)));
   EXPECT_TRUE(is_refused(g4lidar_get(nullptr, G4LIDAR_LOW_POWER, 0, &value, &why)));
@@ -64,7 +64,7 @@ TEST(CArguments, NullIsAnError) {
   EXPECT_TRUE(is_refused(g4lidar_estimator_create(nullptr, &why)));
   // Without an error struct, too.
   EXPECT_EQ(g4lidar_open("", nullptr, nullptr), G4LIDAR_BAD_ARGUMENT);
-  EXPECT_EQ(g4lidar_next_scan(nullptr, 0, nullptr, nullptr), G4LIDAR_BAD_ARGUMENT);
+  EXPECT_EQ(g4lidar_try_scan(nullptr, 0, nullptr, nullptr), G4LIDAR_BAD_ARGUMENT);
 }
 
 TEST(CArguments, NullIsAnErrorOfFunctionsWithoutErrorStruct) {

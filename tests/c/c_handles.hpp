@@ -84,7 +84,7 @@ inline const g4lidar_scan* next_whole(const lidar& from) {
   const g4lidar_scan* scan = nullptr;
   g4lidar_error why;
   for (int i = 0; i < 10; ++i) {
-    if (g4lidar_next_scan(from.get(), g4lidar::test::patience_ms, &scan, &why) != G4LIDAR_OK) break;
+    if (g4lidar_try_scan(from.get(), g4lidar::test::patience_ms, &scan, &why) != G4LIDAR_OK) break;
     if (scan->is_whole) return scan;
   }
   ADD_FAILURE() << why.message;

@@ -44,7 +44,7 @@ TEST(CEqualShapes, ToThoseOfConvert) {
   ASSERT_EQ(g4lidar_start(opened, &why), G4LIDAR_OK) << why.message;
   std::string points;
   const g4lidar_scan* scan = nullptr;
-  while (g4lidar_next_scan(opened, 500, &scan, &why) == G4LIDAR_OK) {
+  while (g4lidar_try_scan(opened, 500, &scan, &why) == G4LIDAR_OK) {
     ASSERT_EQ(
         g4lidar_shaper_shape(made, scan->points, scan->point_count, scan->is_piece, nullptr, 0),
         G4LIDAR_OK);

@@ -58,7 +58,7 @@ TEST(CLidar, CountsTimePacketsAndRevolutionsWithCrc) {
   int flagged = 0;
   const g4lidar_scan* scan = nullptr;
   while (g4lidar_simulator_get_state(device.get())->time_ns < 9'000'000'000) {
-    ASSERT_EQ(g4lidar_next_scan(it.get(), 5000, &scan, nullptr), G4LIDAR_OK);
+    ASSERT_EQ(g4lidar_try_scan(it.get(), 5000, &scan, nullptr), G4LIDAR_OK);
     flagged += (scan->flags & G4LIDAR_CRC_MISMATCH) != 0;
   }
   const g4lidar_counts* all = g4lidar_get_counts(it.get());
@@ -77,7 +77,7 @@ TEST(CLidar, CountsEmptyPackets) {
   const g4lidar_scan* scan = nullptr;
   std::uint64_t turns = 0;
   for (; turns < 20; ++turns)
-    ASSERT_EQ(g4lidar_next_scan(it.get(), 5000, &scan, nullptr), G4LIDAR_OK);
+    ASSERT_EQ(g4lidar_try_scan(it.get(), 5000, &scan, nullptr), G4LIDAR_OK);
   const g4lidar_counts* all = g4lidar_get_counts(it.get());
   EXPECT_GE(all->extras.empty_packets, turns);
   EXPECT_LE(all->extras.empty_packets, turns + 10);
@@ -226,7 +226,7 @@ TEST(CLidar, ReportsAnUnplugAndReconnects) {
   const g4lidar_scan* scan = nullptr;
   g4lidar_error why;
   int code = G4LIDAR_OK;
-  while (code == G4LIDAR_OK) code = g4lidar_next_scan(it.get(), 300, &scan, &why);
+  while (code == G4LIDAR_OK) code = g4lidar_try_scan(it.get(), 300, &scan, &why);
   EXPECT_EQ(code, G4LIDAR_RECONNECTING);
   EXPECT_EQ(why.is_fatal, 0);
   ASSERT_EQ(g4lidar_next_event(it.get(), &event), G4LIDAR_OK);
@@ -268,8 +268,8 @@ TEST(CLidar, FailsWithGoneAfterClose) {
   g4lidar_lidar* closed = it.get();
   EXPECT_EQ(g4lidar_start(closed, nullptr), G4LIDAR_GONE);
   // The scan that had arrived before is given first.
-  while (g4lidar_next_scan(closed, 0, &scan, nullptr) == G4LIDAR_OK) continue;
-  EXPECT_EQ(g4lidar_next_scan(closed, 100, &scan, nullptr), G4LIDAR_GONE);
+  while (g4lidar_try_scan(closed, 0, &scan, nullptr) == G4LIDAR_OK) continue;
+  EXPECT_EQ(g4lidar_try_scan(closed, 100, &scan, nullptr), G4LIDAR_GONE);
   EXPECT_EQ(g4lidar_next_points(closed, 100, &points, &count, nullptr), G4LIDAR_GONE);
   EXPECT_EQ(g4lidar_process(closed, nullptr), G4LIDAR_GONE);
   EXPECT_EQ(g4lidar_get(closed, G4LIDAR_SCAN_FREQUENCY, 0, &value, nullptr), G4LIDAR_GONE);

@@ -51,7 +51,7 @@ TEST(CLoop, DeadlineEndsTheWaitForASilentLidar) {
     pollfd waiting{g4lidar_descriptor(it.get()), POLLIN, 0};
     ASSERT_GE(::poll(&waiting, 1, timeout_ms), 0);
     do {
-      code = g4lidar_next_scan(it.get(), 0, &scan, &why);
+      code = g4lidar_try_scan(it.get(), 0, &scan, &why);
     } while (code == G4LIDAR_OK);
   }
   EXPECT_EQ(code, G4LIDAR_STALLED) << why.message;
@@ -157,7 +157,7 @@ TEST(CLoop, AStoppedScanEndsAndBeginsAgain) {
   EXPECT_FALSE(g4lidar_simulator_get_state(device.get())->is_scanning);
   const g4lidar_scan* scan = nullptr;
   g4lidar_error why;
-  while (g4lidar_next_scan(it.get(), 0, &scan, &why) == G4LIDAR_OK) continue;
+  while (g4lidar_try_scan(it.get(), 0, &scan, &why) == G4LIDAR_OK) continue;
   EXPECT_EQ(why.code, G4LIDAR_NOT_SCANNING) << why.message;
   ASSERT_EQ(g4lidar_start(it.get(), nullptr), G4LIDAR_OK);
   EXPECT_NE(next_whole(it), nullptr);

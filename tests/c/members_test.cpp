@@ -22,7 +22,7 @@ g4lidar_counts counts_with(const char* setup, std::uint32_t* suspect_packets = n
   const lidar it = start_on(device, &options);
   const g4lidar_scan* scan = nullptr;
   while (g4lidar_simulator_get_state(device.get())->time_ns < 5 * second) {
-    if (g4lidar_next_scan(it.get(), 1000, &scan, nullptr) != G4LIDAR_OK) continue;
+    if (g4lidar_try_scan(it.get(), 1000, &scan, nullptr) != G4LIDAR_OK) continue;
     if (suspect_packets == nullptr) continue;
     EXPECT_GE(scan->suspect_samples, scan->suspect_packets);
     *suspect_packets += scan->suspect_packets;
@@ -53,11 +53,11 @@ TEST(CMembers, PiecesComeOnlyIfWished) {
     options.partial_scans = pieces;
     const lidar it = start_on(device, &options);
     const g4lidar_scan* scan = nullptr;
-    EXPECT_EQ(g4lidar_next_scan(it.get(), 5000, &scan, nullptr), G4LIDAR_OK);
+    EXPECT_EQ(g4lidar_try_scan(it.get(), 5000, &scan, nullptr), G4LIDAR_OK);
     EXPECT_EQ(scan->is_piece, pieces);
     const std::uint32_t revolution = scan->revolution;
     const std::uint32_t flags = scan->flags;
-    EXPECT_EQ(g4lidar_next_scan(it.get(), 5000, &scan, nullptr), G4LIDAR_OK);
+    EXPECT_EQ(g4lidar_try_scan(it.get(), 5000, &scan, nullptr), G4LIDAR_OK);
     EXPECT_EQ(scan->revolution, revolution + 1);
     EXPECT_EQ(scan->points[0].revolution, scan->revolution);
     EXPECT_NEAR(scan->measured_sample_rate_hz, 9000.0F, 90.0F);

@@ -31,7 +31,7 @@ class CModel : public testing::Test {
     if (code != G4LIDAR_OK) return -1 - code;
     EXPECT_EQ(g4lidar_start(made, &why_), G4LIDAR_OK) << why_.message;
     const g4lidar_scan* scan = nullptr;
-    EXPECT_EQ(g4lidar_next_scan(made, 1000, &scan, &why_), G4LIDAR_OK) << why_.message;
+    EXPECT_EQ(g4lidar_try_scan(made, 1000, &scan, &why_), G4LIDAR_OK) << why_.message;
     return scan == nullptr ? -1 : scan->points[1].intensity;
   }
 
@@ -139,7 +139,7 @@ TEST_F(CModel, TheOffsetOfZeroIsGiven) {
     const lidar it(made);
     ASSERT_EQ(g4lidar_start(made, &why_), G4LIDAR_OK) << why_.message;
     const g4lidar_scan* scan = nullptr;
-    ASSERT_EQ(g4lidar_next_scan(made, 1000, &scan, &why_), G4LIDAR_OK) << why_.message;
+    ASSERT_EQ(g4lidar_try_scan(made, 1000, &scan, &why_), G4LIDAR_OK) << why_.message;
     EXPECT_NEAR(scan->points[0].angle_deg, is_given ? 123.0F : 0.0F, 0.01F);
     bool is_reported = false;
     g4lidar_event event;

@@ -71,13 +71,13 @@ void expect_state(const background& of, int state) {
 TEST_F(CPlayer, PausesAndGoesOn) {
   const lidar it = play();
   const g4lidar_scan* scan = nullptr;
-  ASSERT_EQ(g4lidar_next_scan(it.get(), patience_ms, &scan, nullptr), G4LIDAR_OK);
+  ASSERT_EQ(g4lidar_try_scan(it.get(), patience_ms, &scan, nullptr), G4LIDAR_OK);
   const std::uint32_t first = scan->revolution;
   ASSERT_EQ(g4lidar_pause(it.get(), true, nullptr), G4LIDAR_OK);
   EXPECT_TRUE(g4lidar_get_playback(it.get())->is_paused);
-  EXPECT_EQ(g4lidar_next_scan(it.get(), 20, &scan, nullptr), G4LIDAR_TIMEOUT);
+  EXPECT_EQ(g4lidar_try_scan(it.get(), 20, &scan, nullptr), G4LIDAR_TIMEOUT);
   ASSERT_EQ(g4lidar_pause(it.get(), false, nullptr), G4LIDAR_OK);
-  ASSERT_EQ(g4lidar_next_scan(it.get(), patience_ms, &scan, nullptr), G4LIDAR_OK);
+  ASSERT_EQ(g4lidar_try_scan(it.get(), patience_ms, &scan, nullptr), G4LIDAR_OK);
   EXPECT_EQ(scan->revolution, first + 1);
 }
 
@@ -90,7 +90,7 @@ TEST_F(CPlayer, ChangesItsSpeedAndLoops) {
   EXPECT_EQ(g4lidar_get_playback(it.get())->speed, 10.0);
   const std::int64_t begin_ns = g4lidar_now_ns();
   const g4lidar_scan* scan = nullptr;
-  while (g4lidar_next_scan(it.get(), patience_ms, &scan, &why) == G4LIDAR_OK) {
+  while (g4lidar_try_scan(it.get(), patience_ms, &scan, &why) == G4LIDAR_OK) {
   }
   EXPECT_EQ(why.code, G4LIDAR_END_OF_INPUT) << why.message;
   EXPECT_GT(g4lidar_now_ns() - begin_ns, second / 5);  // four seconds at ten times the speed
@@ -100,7 +100,7 @@ TEST_F(CPlayer, ChangesItsSpeedAndLoops) {
   std::int64_t first_ns = 0;
   std::int64_t last_ns = 0;
   while (last_ns - first_ns < 9 * second) {  // more than twice its length
-    ASSERT_EQ(g4lidar_next_scan(it.get(), patience_ms, &scan, nullptr), G4LIDAR_OK);
+    ASSERT_EQ(g4lidar_try_scan(it.get(), patience_ms, &scan, nullptr), G4LIDAR_OK);
     if (first_ns == 0) first_ns = scan->time_ns;
     EXPECT_GT(scan->time_ns, last_ns);
     last_ns = scan->time_ns;
@@ -112,7 +112,7 @@ TEST_F(CPlayer, KnowsWhereItIs) {
   ASSERT_EQ(g4lidar_seek(it.get(), 2 * second, nullptr), G4LIDAR_OK);
   EXPECT_EQ(g4lidar_get_playback(it.get())->position_ns, 2 * second);
   const g4lidar_scan* scan = nullptr;
-  ASSERT_EQ(g4lidar_next_scan(it.get(), patience_ms, &scan, nullptr), G4LIDAR_OK);
+  ASSERT_EQ(g4lidar_try_scan(it.get(), patience_ms, &scan, nullptr), G4LIDAR_OK);
   const g4lidar_playback now = *g4lidar_get_playback(it.get());
   EXPECT_NEAR(static_cast<double>(now.length_ns), 4e9, 2e8);
   EXPECT_GE(now.position_ns, scan->end_ns - now.begin_ns);

@@ -164,12 +164,12 @@ TEST(CDiscovery, RealTimeLidarIsListedFoundSelectedAndWoken) {
     pollfd waiting{g4lidar_descriptor(it.get()), POLLIN, 0};
     ASSERT_GE(waiting.fd, 0);
     ASSERT_GE(::poll(&waiting, 1, g4lidar_poll_timeout_ms(it.get())), 0);
-    code = g4lidar_next_scan(it.get(), 0, &scan, &why);
+    code = g4lidar_try_scan(it.get(), 0, &scan, &why);
   }
   ASSERT_EQ(code, G4LIDAR_OK) << why.message;
   EXPECT_GT(scan->point_count, 1000U);
   ASSERT_EQ(g4lidar_simulator_unplug(device.get()), G4LIDAR_OK);
-  while (code == G4LIDAR_OK) code = g4lidar_next_scan(it.get(), patience_ms, &scan, &why);
+  while (code == G4LIDAR_OK) code = g4lidar_try_scan(it.get(), patience_ms, &scan, &why);
   EXPECT_EQ(code, G4LIDAR_GONE);
   EXPECT_EQ(why.is_fatal, 1);
 }
@@ -185,7 +185,7 @@ TEST(CRealTime, AnotherThreadWakesAWaitingCall) {
     g4lidar_wake(it.get());
   });
   const g4lidar_scan* scan = nullptr;
-  EXPECT_EQ(g4lidar_next_scan(it.get(), patience_ms, &scan, &why), G4LIDAR_CANCELLED);
+  EXPECT_EQ(g4lidar_try_scan(it.get(), patience_ms, &scan, &why), G4LIDAR_CANCELLED);
   other.join();
 }
 

@@ -192,7 +192,7 @@ TEST(Returns, RunningDiagnosis_HasTheSameText) {
       lidar::open(judge.observe(std::make_unique<sim::virtual_connector>(simulated, clock)));
   ASSERT_TRUE(lidar && lidar->start());
   while (clock.now_ns() < 30'000'000'000)
-    static_cast<void>(lidar->next_scan(std::chrono::milliseconds(200)));
+    static_cast<void>(lidar->try_scan(std::chrono::milliseconds(200)));
   const point_filter directions{.in = frame::robot};
   examined running;
   running.stages = judge.stages(directions);

@@ -48,7 +48,7 @@ struct use {
   running_diagnosis_options judged{};
   const model* numbered = nullptr;  ///< Recognised by its number, not named.
   std::int64_t seconds = 20;
-  bool takes_points = false;  // next_points(), not next_scan()
+  bool takes_points = false;  // next_points(), not try_scan()
   /// Called once a second with the time.
   std::function<void(lidar&, std::int64_t second)> each_second{};
 };
@@ -107,7 +107,7 @@ inline seen watch(const use& how) {
   bool is_over = false;
   while (!is_over && clock.now_ns() < how.seconds * 1'000'000'000) {
     const auto got = how.takes_points ? result<void>(opened->next_points(200ms).map([](auto) {}))
-                                      : result<void>(opened->next_scan(200ms).map([](auto) {}));
+                                      : result<void>(opened->try_scan(200ms).map([](auto) {}));
     while (const auto event = opened->next_event()) judge.add(*event);
     if (!got && got.error() == problem::not_scanning) {
       clock.advance_to(clock.now_ns() + 100'000'000);

@@ -175,7 +175,7 @@ TEST(RunningHealthy, APauseOfTheHost_IsNotAFaultOfTheLidar) {
           if (takes_points) {
             static_cast<void>(device->next_points(200ms));
           } else {
-            static_cast<void>(device->next_scan(200ms));
+            static_cast<void>(device->try_scan(200ms));
           }
         }
         const seen found{{judge.stages()}};
@@ -197,7 +197,7 @@ TEST(RunningHealthy, ABusyProgram_IsAPauseOfTheHost) {
     ASSERT_TRUE(device);
     ASSERT_TRUE(device->start());
     while (clock.now_ns() < 12 * second) {
-      static_cast<void>(device->next_scan(200ms));
+      static_cast<void>(device->try_scan(200ms));
       if (clock.now_ns() > 5 * second) clock.advance_to(clock.now_ns() + work_ms * ms);
     }
     const seen found{{judge.stages()}};
@@ -216,7 +216,7 @@ TEST(RunningHealthy, AnEventLoop_IsNotABusyHost) {
     ASSERT_TRUE(device);
     ASSERT_TRUE(device->start());
     while (clock.now_ns() < 12 * second) {
-      static_cast<void>(device->next_scan(0ms));
+      static_cast<void>(device->try_scan(0ms));
       const std::int64_t next_ns = simulated.next_ns(clock.now_ns());  // as a poll would
       clock.advance_to(std::min(device->event_loop().next_deadline_ns(),
                                 std::max(next_ns, clock.now_ns() + rest_ms * ms)));
@@ -240,7 +240,7 @@ TEST(RunningHealthy, StaysOkForHours_InConstantMemory) {
   std::int64_t looked_ns = 0;
   while (clock.now_ns() < end_ns) {
     const std::size_t before = allocations_so_far();
-    static_cast<void>(device->next_scan(200ms));
+    static_cast<void>(device->try_scan(200ms));
     if (clock.now_ns() > 30 * second) allocations += allocations_so_far() - before;
     if (clock.now_ns() < looked_ns + 30 * second) continue;
     looked_ns = clock.now_ns();

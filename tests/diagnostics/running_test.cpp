@@ -169,8 +169,8 @@ TEST(RunningDiagnosis, ALossIsOverWhenALidarAtRestAnswers) {
   {
     auto device = open();
     ASSERT_TRUE(device && device->start());
-    auto scan = device->next_scan(1s);
-    while (scan || !scan.error().is_fatal()) scan = device->next_scan(1s);
+    auto scan = device->try_scan(1s);
+    while (scan || !scan.error().is_fatal()) scan = device->try_scan(1s);
     judge.add(scan.error());
   }
   EXPECT_EQ(judge.stages().front().outcome, stage_verdict::fail);

@@ -57,7 +57,7 @@ struct opening {
       false;  ///< An earlier program has closed the port: a motor that DTR drives is at rest.
 };
 
-/// From the opening of the port to the first whole scan. Fails like lidar::open(), start() and next_scan().
+/// From the opening of the port to the first whole scan. Fails like lidar::open(), start() and try_scan().
 inline result<std::int64_t> time_to_first_scan(const opening& what) {
   constexpr std::int64_t on_ns = 5'000'000'000;
   constexpr std::int64_t search_ns = 5'000'000'000;
@@ -88,7 +88,7 @@ inline result<std::int64_t> time_to_first_scan(const opening& what) {
   if (!opened && has_one_rate && opened.error() != problem::silence) opened = open_found();
   if (!opened) return tl::unexpected(opened.error());
   if (auto started = opened->start(); !started) return tl::unexpected(started.error());
-  const auto got = opened->next_scan(std::chrono::seconds(10));
+  const auto got = opened->try_scan(std::chrono::seconds(10));
   if (!got) return tl::unexpected(got.error());
   return clock.now_ns() - begin_ns;
 }

@@ -53,7 +53,7 @@ TEST_P(OpenAtTheOtherRate, IsFound) {
     ASSERT_TRUE(opened) << baud << ": " << opened.error().message();
     EXPECT_EQ(opened->recognition().candidates.size(), 1U);
     ASSERT_TRUE(opened->start());
-    const auto got = opened->next_scan(patience);
+    const auto got = opened->try_scan(patience);
     ASSERT_TRUE(got) << baud << ": " << got.error().message();
     EXPECT_EQ(got->model->word, GetParam());
   }
@@ -63,7 +63,7 @@ TEST_P(OpenAtTheOtherRate, OfASimulatedSource_IsFound) {
   auto opened = lidar::open("sim:?model=" + std::string(GetParam()) + "&baud=128000");
   ASSERT_TRUE(opened) << opened.error().message();
   ASSERT_TRUE(opened->start());
-  EXPECT_TRUE(opened->next_scan(patience));
+  EXPECT_TRUE(opened->try_scan(patience));
 }
 
 /// As one at a port, of a model that has one rate.
@@ -72,7 +72,7 @@ TEST(OpenNamed, ASimulatedSourceAtNoRateOfItsModel_IsFound) {
     auto opened = lidar::open(source);
     ASSERT_TRUE(opened) << source << opened.error().message();
     ASSERT_TRUE(opened->start());
-    EXPECT_TRUE(opened->next_scan(patience)) << source;
+    EXPECT_TRUE(opened->try_scan(patience)) << source;
   }
 }
 
@@ -166,7 +166,7 @@ TEST(SharedNumber, OfANamedModel_IsAccepted) {
     ASSERT_TRUE(opened) << opened.error().message();
     EXPECT_EQ(opened->information().model, number);
     ASSERT_TRUE(opened->start());
-    const auto got = opened->next_scan(patience);
+    const auto got = opened->try_scan(patience);
     ASSERT_TRUE(got) << got.error().message();
     EXPECT_EQ(got->model->turn_deg, 180);
   }

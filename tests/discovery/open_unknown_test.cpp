@@ -27,7 +27,7 @@ TEST_P(OpenUnknown, ScansAsItsModel) {
   auto opened = lidar::open(served->path());
   ASSERT_TRUE(opened) << opened.error().message();
   ASSERT_TRUE(opened->start());
-  const auto got = opened->next_scan(patience);
+  const auto got = opened->try_scan(patience);
   ASSERT_TRUE(got) << got.error().message();
   EXPECT_EQ(got->model->word, GetParam());
   EXPECT_GT(got->points.size(), 100U);
@@ -53,7 +53,7 @@ TEST_F(OpenWithSettings, LimitsAreThoseOfTheModelThatIsFound) {
   auto opened = open("tg15", how);
   ASSERT_TRUE(opened) << opened.error().message();
   ASSERT_TRUE(opened->start());
-  const auto got = opened->next_scan(patience);
+  const auto got = opened->try_scan(patience);
   ASSERT_TRUE(got) << got.error().message();
   served_->with([](sim::device& simulated, std::int64_t) {
     EXPECT_EQ(simulated.settings().scan_frequency_chz, 300);
@@ -124,7 +124,7 @@ TEST_P(OpenLeftScanning, IsStoppedNamedAndScansAsItsModel) {
   EXPECT_EQ(event->what, lidar_event::kind::found_scanning);
   served->with([](sim::device& simulated, std::int64_t) { EXPECT_FALSE(simulated.is_scanning()); });
   ASSERT_TRUE(opened->start());
-  const auto got = opened->next_scan(patience);
+  const auto got = opened->try_scan(patience);
   ASSERT_TRUE(got) << got.error().message();
   EXPECT_EQ(got->model->word, GetParam());
 }

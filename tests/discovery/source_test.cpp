@@ -117,7 +117,7 @@ TEST_F(Source, Sim_SurvivesAnUnplugWithReconnecting) {
   // On a busy machine it is unplugged before it has started.
   EXPECT_TRUE(comes_true([&] { return lidar->start().has_value(); }));
   EXPECT_TRUE(comes_true([&] {
-    static_cast<void>(lidar->next_scan(100ms));
+    static_cast<void>(lidar->try_scan(100ms));
     return lidar->counts().reconnects == 1 && lidar->counts().scans > 0;
   }));
 }

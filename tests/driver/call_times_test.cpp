@@ -124,7 +124,7 @@ TEST(CallTimes, Stop) {
     auto lidar = open_virtual(bench);
     ASSERT_TRUE(lidar && lidar->start());
     while (bench.now_ns < stop_ns) {
-      if (const auto scan = lidar->next_scan(100ms); !scan && scan.error().is_fatal()) break;
+      if (const auto scan = lidar->try_scan(100ms); !scan && scan.error().is_fatal()) break;
     }
     static_cast<void>(stops.measure(bench, fault, [&] { return lidar->stop(); }));
   });

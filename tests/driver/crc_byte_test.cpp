@@ -33,7 +33,7 @@ TEST(CrcByte, HealthyDevice_HasWholeScans) {
   auto lidar = open_virtual(bench);
   ASSERT_TRUE(lidar && lidar->start());
   for (int i = 0; i < 50; ++i) {
-    const auto scan = lidar->next_scan(2s);
+    const auto scan = lidar->try_scan(2s);
     ASSERT_TRUE(scan) << scan.error().message();
     EXPECT_TRUE(scan->is_whole()) << i;
   }
@@ -53,7 +53,7 @@ TEST(CrcByte, LostPacket_FlagsItsScan) {
   ASSERT_TRUE(lidar && lidar->start());
   int flagged = 0;
   while (bench.now_ns < 9'000 * ms) {
-    const auto scan = lidar->next_scan(2s);
+    const auto scan = lidar->try_scan(2s);
     ASSERT_TRUE(scan) << scan.error().message();
     flagged += scan->has(scan_flags::crc_mismatch);
     EXPECT_EQ(scan->is_whole(), !scan->has(scan_flags::crc_mismatch));
@@ -70,7 +70,7 @@ TEST(CrcByte, OtherDevice_IsNotFlagged) {
   auto lidar = open_virtual(bench);
   ASSERT_TRUE(lidar && lidar->start());
   while (bench.now_ns < 9'000 * ms) {
-    const auto scan = lidar->next_scan(2s);
+    const auto scan = lidar->try_scan(2s);
     ASSERT_TRUE(scan) << scan.error().message();
     EXPECT_FALSE(scan->has(scan_flags::crc_mismatch));
   }
@@ -87,13 +87,13 @@ TEST(CrcByte, CutRevolutions_AreNotFlagged) {
   for (int i = 0; i < 6; ++i) {
     ASSERT_TRUE(lidar->start());
     for (int scans = 0; scans < 6;) {
-      const auto scan = lidar->next_scan(10s);
+      const auto scan = lidar->try_scan(10s);
       ASSERT_TRUE(scan || !scan.error().is_fatal()) << scan.error().message();
       if (!scan) continue;  // it is being reconnected
       EXPECT_FALSE(scan->has(scan_flags::crc_mismatch));
       ++scans;
     }
-    static_cast<void>(lidar->next_scan(std::chrono::milliseconds(10 + 17 * i)));
+    static_cast<void>(lidar->try_scan(std::chrono::milliseconds(10 + 17 * i)));
     if (i % 2 == 0) {
       ASSERT_TRUE(lidar->stop());
     } else {

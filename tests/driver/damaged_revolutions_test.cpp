@@ -50,7 +50,7 @@ class DamagedRevolutions : public testing::TestWithParam<damage> {
     ASSERT_TRUE(device->start());
     const std::int64_t end_ns = bench.now_ns + run_ns;
     while (bench.now_ns < end_ns) {
-      const auto found = device->next_scan(2000ms);  // also while it spins up
+      const auto found = device->try_scan(2000ms);  // also while it spins up
       ASSERT_TRUE(found) << found.error().message();
       scans_.emplace_back(*found, std::vector<point>(found->begin(), found->end()));
     }

@@ -21,7 +21,7 @@ TEST(FoundBySimulation, StartsAsOftenAsItIsStopped) {
   for (int i = 0; i < 10; ++i) {
     ASSERT_TRUE(lidar->start());
     ASSERT_TRUE(bench.device.is_scanning()) << i;
-    ASSERT_TRUE(lidar->next_scan(2000ms)) << i;
+    ASSERT_TRUE(lidar->try_scan(2000ms)) << i;
     ASSERT_TRUE(lidar->stop());
     ASSERT_FALSE(bench.device.is_scanning()) << i;
   }
@@ -32,9 +32,9 @@ TEST(FoundBySimulation, BytesReceivedWhileSuspended_AreNoSilence) {
   auto lidar = open_virtual(bench);
   ASSERT_TRUE(lidar);
   ASSERT_TRUE(lidar->start());
-  ASSERT_TRUE(lidar->next_scan(2000ms));
+  ASSERT_TRUE(lidar->try_scan(2000ms));
   bench.now_ns += 2000 * ms;  // longer than a scan may be silent
-  for (int i = 0; i < 20; ++i) ASSERT_TRUE(lidar->next_scan(500ms)) << i;
+  for (int i = 0; i < 20; ++i) ASSERT_TRUE(lidar->try_scan(500ms)) << i;
   EXPECT_FALSE(lidar->next_event());
   EXPECT_EQ(lidar->counts().samples_lost, 0U);
 }
@@ -50,7 +50,7 @@ TEST(FoundBySimulation, RepeatedStart_FindsTheDeviceAgain) {
   EXPECT_FALSE(lidar->start());
   while (bench.now_ns < 6000 * ms && !lidar->start()) bench.now_ns += 100 * ms;
   EXPECT_TRUE(lidar->is_scanning());
-  EXPECT_TRUE(lidar->next_scan(2000ms));
+  EXPECT_TRUE(lidar->try_scan(2000ms));
 }
 
 TEST(FoundBySimulation, WokenAsk_InterruptsTheScanLikeAnyOther) {
@@ -58,12 +58,12 @@ TEST(FoundBySimulation, WokenAsk_InterruptsTheScanLikeAnyOther) {
   auto lidar = open_virtual(bench);
   ASSERT_TRUE(lidar);
   ASSERT_TRUE(lidar->start());
-  for (int i = 0; i < 10; ++i) ASSERT_TRUE(lidar->next_scan(2000ms));
+  for (int i = 0; i < 10; ++i) ASSERT_TRUE(lidar->try_scan(2000ms));
   lidar->wake();
   const auto woken = lidar->ask(requests::health(), while_scanning::stop_and_resume);
   ASSERT_FALSE(woken);
   EXPECT_EQ(woken.error().code(), problem::cancelled);
-  for (int i = 0; i < 10; ++i) ASSERT_TRUE(lidar->next_scan(2000ms)) << i;
+  for (int i = 0; i < 10; ++i) ASSERT_TRUE(lidar->try_scan(2000ms)) << i;
   EXPECT_EQ(lidar->counts().samples_lost, 0U);
 }
 
@@ -72,11 +72,11 @@ TEST(FoundBySimulation, WokenStop_ThenStarts) {
   auto lidar = open_virtual(bench);
   ASSERT_TRUE(lidar);
   ASSERT_TRUE(lidar->start());
-  ASSERT_TRUE(lidar->next_scan(2000ms));
+  ASSERT_TRUE(lidar->try_scan(2000ms));
   lidar->wake();
   EXPECT_FALSE(lidar->stop());
   ASSERT_TRUE(lidar->start());
-  EXPECT_TRUE(lidar->next_scan(2000ms));
+  EXPECT_TRUE(lidar->try_scan(2000ms));
   EXPECT_TRUE(bench.device.is_scanning());
 }
 
@@ -86,10 +86,10 @@ TEST(FoundBySimulation, WakeAfterASuspension_IsNoSilence) {
   ASSERT_TRUE(lidar);
   ASSERT_TRUE(lidar->start());
   for (int i = 0; i < 5; ++i) {
-    ASSERT_TRUE(lidar->next_scan(2000ms));
+    ASSERT_TRUE(lidar->try_scan(2000ms));
     bench.now_ns += 1500 * ms;
     lidar->wake();
-    static_cast<void>(lidar->next_scan(100ms));
+    static_cast<void>(lidar->try_scan(100ms));
   }
   EXPECT_FALSE(lidar->next_event());
 }
@@ -110,7 +110,7 @@ TEST(FoundBySimulation, SettingsLostByAReboot_AreSetAgain) {
   auto lidar = open_virtual(bench, options);
   ASSERT_TRUE(lidar);
   ASSERT_TRUE(lidar->start());
-  for (int i = 0; i < 20; ++i) static_cast<void>(lidar->next_scan(500ms));
+  for (int i = 0; i < 20; ++i) static_cast<void>(lidar->try_scan(500ms));
   const auto event = lidar->next_event();
   ASSERT_TRUE(event);
   EXPECT_EQ(event->what, lidar_event::kind::restarted);
@@ -125,9 +125,9 @@ TEST(FoundBySimulation, SettingsOfAsk_AreSetAgainAfterARestart) {
   ASSERT_TRUE(lidar);
   ASSERT_TRUE(lidar->ask(requests::set(scan_frequency{1100})));
   ASSERT_TRUE(lidar->start());
-  ASSERT_TRUE(lidar->next_scan(2000ms));
+  ASSERT_TRUE(lidar->try_scan(2000ms));
   ASSERT_TRUE(lidar->ask(requests::restart(), while_scanning::stop_and_resume));
-  EXPECT_TRUE(lidar->next_scan(2000ms));
+  EXPECT_TRUE(lidar->try_scan(2000ms));
   const auto frequency =
       lidar->ask(requests::get_scan_frequency(), while_scanning::stop_and_resume);
   EXPECT_EQ(*frequency, scan_frequency{1100});
@@ -153,10 +153,10 @@ TEST(FoundBySimulation, SettingsOfAsk_AreSetAgainAfterAWokenRestart) {
   ASSERT_TRUE(lidar);
   ASSERT_TRUE(lidar->ask(requests::set(scan_frequency{1100})));
   ASSERT_TRUE(lidar->start());
-  ASSERT_TRUE(lidar->next_scan(2000ms));
+  ASSERT_TRUE(lidar->try_scan(2000ms));
   lidar->wake();
   EXPECT_FALSE(lidar->ask(requests::restart(), while_scanning::stop_and_resume));
-  EXPECT_TRUE(lidar->next_scan(5000ms));
+  EXPECT_TRUE(lidar->try_scan(5000ms));
   const auto frequency =
       lidar->ask(requests::get_scan_frequency(), while_scanning::stop_and_resume);
   EXPECT_EQ(*frequency, scan_frequency{1100});
@@ -178,9 +178,9 @@ TEST(FoundBySimulation, SuspensionAtTheStart_LosesNothing) {
       auto lidar = open_with(bench, slept_ms % 2 == 0 ? 8ms : 0ms);
       ASSERT_TRUE(lidar);
       ASSERT_TRUE(lidar->start());
-      static_cast<void>(lidar->next_scan(std::chrono::milliseconds(slept_ms / 50)));
+      static_cast<void>(lidar->try_scan(std::chrono::milliseconds(slept_ms / 50)));
       bench.now_ns += slept_ms * ms;
-      for (int i = 0; i < 15; ++i) ASSERT_TRUE(lidar->next_scan(500ms)) << ratio << ", scan " << i;
+      for (int i = 0; i < 15; ++i) ASSERT_TRUE(lidar->try_scan(500ms)) << ratio << ", scan " << i;
       EXPECT_EQ(lidar->counts().samples_lost, 0U) << ratio << ", " << slept_ms << " ms";
     }
   }
@@ -198,11 +198,11 @@ TEST(FoundBySimulation, BytesLostWhileSuspended_DoNotShiftTheTimes) {
     ASSERT_TRUE(lidar->start());
     for (int i = 0; i < 12; ++i) {
       bench.now_ns += (3100 + 130 * i) * ms;
-      for (int scans = 0; scans < 4; ++scans) static_cast<void>(lidar->next_scan(500ms));
+      for (int scans = 0; scans < 4; ++scans) static_cast<void>(lidar->try_scan(500ms));
     }
     const std::int64_t end_ns = bench.now_ns + 1500 * ms;
-    while (bench.now_ns < end_ns) static_cast<void>(lidar->next_scan(500ms));
-    const auto scan = lidar->next_scan(500ms);
+    while (bench.now_ns < end_ns) static_cast<void>(lidar->try_scan(500ms));
+    const auto scan = lidar->try_scan(500ms);
     ASSERT_TRUE(scan);
     EXPECT_LT(bench.now_ns - scan->points.back().time_ns, 60 * ms) << chz;
   }
@@ -213,10 +213,10 @@ TEST(FoundBySimulation, Times_FollowASampleRateSetByAsk) {
   auto lidar = open_virtual(bench);
   ASSERT_TRUE(lidar);
   ASSERT_TRUE(lidar->start());
-  ASSERT_TRUE(lidar->next_scan(2000ms));
+  ASSERT_TRUE(lidar->try_scan(2000ms));
   ASSERT_TRUE(lidar->ask(requests::set(sample_rate::khz_4), while_scanning::stop_and_resume));
-  for (int i = 0; i < 5; ++i) ASSERT_TRUE(lidar->next_scan(2000ms)) << i;
-  const auto scan = lidar->next_scan(2000ms);
+  for (int i = 0; i < 5; ++i) ASSERT_TRUE(lidar->try_scan(2000ms)) << i;
+  const auto scan = lidar->try_scan(2000ms);
   ASSERT_TRUE(scan);
   const auto took_ns = scan->points.back().time_ns - scan->points.front().time_ns;
   EXPECT_NEAR(static_cast<double>(took_ns) / static_cast<double>(scan->points.size() - 1), 250e3,
@@ -245,7 +245,7 @@ TEST(FoundBySimulation, QuickSpinUp_LosesNothing) {
     auto lidar = open_virtual(bench);
     ASSERT_TRUE(lidar);
     ASSERT_TRUE(lidar->start());
-    for (int i = 0; i < 10; ++i) ASSERT_TRUE(lidar->next_scan(2000ms)) << i;
+    for (int i = 0; i < 10; ++i) ASSERT_TRUE(lidar->try_scan(2000ms)) << i;
     EXPECT_EQ(lidar->counts().samples_lost, 0U) << seed;
   }
 }

@@ -166,9 +166,9 @@ TEST(ExtremeTimeouts, AreLimited) {
   ASSERT_TRUE(lidar);
   ASSERT_TRUE(lidar->start());
   const std::int64_t before_ns = bench.now_ns;
-  EXPECT_EQ(lidar->next_scan(milliseconds::min()).error(), problem::timeout);
+  EXPECT_EQ(lidar->try_scan(milliseconds::min()).error(), problem::timeout);
   EXPECT_LT(bench.now_ns - before_ns, 100 * ms);
-  EXPECT_TRUE(lidar->next_scan(milliseconds::max()));
+  EXPECT_TRUE(lidar->try_scan(milliseconds::max()));
   EXPECT_TRUE(lidar->next_points(milliseconds::max()));
   while (lidar->next_points(milliseconds::min())) {  // ends when the available points are taken
   }
@@ -184,7 +184,7 @@ TEST(MovedFromLidar, BehavesAsClosed) {
   EXPECT_EQ(empty.stop().error(), problem::gone);
   EXPECT_TRUE(empty.close());
   empty.release();
-  EXPECT_EQ(empty.next_scan(1s).error(), problem::gone);
+  EXPECT_EQ(empty.try_scan(1s).error(), problem::gone);
   EXPECT_EQ(empty.next_points(1s).error(), problem::gone);
   EXPECT_EQ(empty.event_loop().process().error(), problem::gone);
   EXPECT_EQ(empty.ask(requests::health()).error(), problem::gone);
@@ -208,7 +208,7 @@ TEST(Deadline, IsTheSameAsATimePoint) {
   auto lidar = open_virtual(bench);
   ASSERT_TRUE(lidar);
   ASSERT_TRUE(lidar->start());
-  ASSERT_TRUE(lidar->next_scan(5s));
+  ASSERT_TRUE(lidar->try_scan(5s));
   EXPECT_EQ(lidar->event_loop().next_deadline().time_since_epoch() / 1ns,
             lidar->event_loop().next_deadline_ns());
 }
@@ -223,7 +223,7 @@ TEST(Stop, KeepsItsDocumentedTime) {
       virtual_bench bench({}, faults);
       auto lidar = open_virtual(bench);
       if (!lidar || !lidar->start()) continue;
-      while (bench.now_ns < 8000 * ms && lidar->next_scan(500ms)) {
+      while (bench.now_ns < 8000 * ms && lidar->try_scan(500ms)) {
       }
       const std::int64_t before_ns = bench.now_ns;
       static_cast<void>(lidar->stop());

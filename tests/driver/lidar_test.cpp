@@ -35,7 +35,7 @@ TEST(Lidar, GivesWholeScans) {
   ASSERT_TRUE(started) << started.error().message();
   EXPECT_TRUE(lidar->is_scanning());
   for (int i = 0; i < 100; ++i) {
-    const auto scan = lidar->next_scan(2000ms);
+    const auto scan = lidar->try_scan(2000ms);
     ASSERT_TRUE(scan) << scan.error().message() << " after " << i;
     EXPECT_TRUE(scan->is_whole());
     EXPECT_GT(scan->points.size(), 1000U);
@@ -53,7 +53,7 @@ TEST(Lidar, Destructor_StopsTheMotor) {
     auto lidar = open_virtual(bench);
     ASSERT_TRUE(lidar);
     ASSERT_TRUE(lidar->start());
-    ASSERT_TRUE(lidar->next_scan(2000ms));
+    ASSERT_TRUE(lidar->try_scan(2000ms));
   }
   EXPECT_TRUE(bench.device.is_idle_and_silent(bench.now_ns));
 }
@@ -64,10 +64,10 @@ TEST(Lidar, ReleasedDuringAScan_ContinuesScanning) {
     auto lidar = open_virtual(bench);
     ASSERT_TRUE(lidar);
     ASSERT_TRUE(lidar->start());
-    ASSERT_TRUE(lidar->next_scan(2000ms));
+    ASSERT_TRUE(lidar->try_scan(2000ms));
     lidar->release();
     EXPECT_FALSE(lidar->is_scanning());
-    EXPECT_EQ(lidar->next_scan(0ms).error().code(), problem::gone);
+    EXPECT_EQ(lidar->try_scan(0ms).error().code(), problem::gone);
     EXPECT_EQ(lidar->start().error().code(), problem::gone);
     lidar->release();  // nothing is left to release
   }
@@ -105,7 +105,7 @@ TEST(Lidar, AppliesTheSettingsOfTheOptions) {
   EXPECT_EQ(settings.direction, motor_direction::counter_clockwise);
   EXPECT_EQ(settings.protection, power_down_protection::on);
   for (int i = 0; i < 100; ++i)
-    ASSERT_TRUE(lidar->next_scan(2000ms)) << i;  // 10 s: it gets keep-alives
+    ASSERT_TRUE(lidar->try_scan(2000ms)) << i;  // 10 s: it gets keep-alives
 }
 
 TEST(Lidar, RefusesToDisturbAScan) {
@@ -113,7 +113,7 @@ TEST(Lidar, RefusesToDisturbAScan) {
   auto lidar = open_virtual(bench);
   ASSERT_TRUE(lidar);
   ASSERT_TRUE(lidar->start());
-  ASSERT_TRUE(lidar->next_scan(2000ms));
+  ASSERT_TRUE(lidar->try_scan(2000ms));
   const auto refused = lidar->ask(requests::device_info());
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().code(), problem::scanning);
@@ -121,7 +121,7 @@ TEST(Lidar, RefusesToDisturbAScan) {
   const auto health = lidar->ask(requests::health(), while_scanning::stop_and_resume);
   ASSERT_TRUE(health) << health.error().message();
   EXPECT_EQ(health->status, health_status::ok);
-  EXPECT_TRUE(lidar->next_scan(2000ms));
+  EXPECT_TRUE(lidar->try_scan(2000ms));
 }
 
 TEST(Lidar, UnplugWithoutReconnecting_IsFatal) {
@@ -132,7 +132,7 @@ TEST(Lidar, UnplugWithoutReconnecting_IsFatal) {
   ASSERT_TRUE(lidar->start());
   result<scan> scan = failure(task::reading, problem::timeout);
   do {
-    scan = lidar->next_scan(500ms);
+    scan = lidar->try_scan(500ms);
   } while (scan || !scan.error().is_fatal());
   EXPECT_EQ(scan.error().code(), problem::gone);
   EXPECT_LT(bench.now_ns, 4100 * ms);
@@ -149,7 +149,7 @@ TEST(Lidar, ReconnectsAfterAnUnplug) {
   ASSERT_TRUE(lidar);
   ASSERT_TRUE(lidar->start());
   while (bench.now_ns < 10'000 * ms) {
-    const auto scan = lidar->next_scan(500ms);
+    const auto scan = lidar->try_scan(500ms);
     if (!scan) {
       ASSERT_FALSE(scan.error().is_fatal()) << scan.error().message();
     }
@@ -169,7 +169,7 @@ TEST(Lidar, NeedsToBeStarted) {
   virtual_bench bench;
   auto lidar = open_virtual(bench);
   ASSERT_TRUE(lidar);
-  EXPECT_EQ(lidar->next_scan(100ms).error().code(), problem::not_scanning);
+  EXPECT_EQ(lidar->try_scan(100ms).error().code(), problem::not_scanning);
 }
 
 }  // namespace

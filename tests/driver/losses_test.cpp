@@ -65,12 +65,12 @@ TEST_P(Losses, EveryPointOfTheRing_IsInAScanOrAPiece) {
   ASSERT_TRUE(device->start());
   std::uint64_t points = 0;
   while (bench.now_ns < 9 * second) {
-    const auto scan = device->next_scan(500ms);
+    const auto scan = device->try_scan(500ms);
     if (scan) points += scan->points.size();
     if (!scan && scan.error().is_fatal()) break;
   }
   static_cast<void>(device->stop());
-  while (const auto scan = device->next_scan(0ms)) points += scan->points.size();
+  while (const auto scan = device->try_scan(0ms)) points += scan->points.size();
   EXPECT_EQ(points, device->counts().stream.points);
   EXPECT_EQ(device->counts().scans_missed, 0U);
 }
@@ -88,7 +88,7 @@ TEST(Losses, PointsOfAClosedLidar_AreCounted) {
   ASSERT_TRUE(device);
   ASSERT_TRUE(device->start());
   std::uint64_t points = points_of(*device, bench, 4 * second);
-  for (int i = 0; i < 3; ++i) ASSERT_TRUE(device->next_scan(500ms));
+  for (int i = 0; i < 3; ++i) ASSERT_TRUE(device->try_scan(500ms));
   ASSERT_TRUE(device->close());
   EXPECT_EQ(device->next_points(0ms).error().code(), problem::gone);
   EXPECT_EQ(points + device->counts().points_missed, device->counts().stream.points);
@@ -128,8 +128,8 @@ TEST(Losses, FileOfBytes_IsDeliveredCompletely) {
     ASSERT_TRUE(again) << again.error().message();
     ASSERT_TRUE(again->start());
     std::uint64_t in_scans = 0;
-    result<scan> scan = again->next_scan(500ms);
-    for (; scan; scan = again->next_scan(500ms)) in_scans += scan->size();
+    result<scan> scan = again->try_scan(500ms);
+    for (; scan; scan = again->try_scan(500ms)) in_scans += scan->size();
     EXPECT_EQ(scan.error().code(), problem::end_of_input);
     EXPECT_EQ(in_scans, points);
     EXPECT_EQ(in_scans, again->counts().stream.points);
@@ -145,14 +145,14 @@ TEST(Losses, WaitingCall_ReturnsImmediately_NextWaitsForTheReconnect) {
   auto device = open_virtual(bench, options);
   ASSERT_TRUE(device);
   ASSERT_TRUE(device->start());
-  result<scan> got = device->next_scan(2000ms);
-  while (got) got = device->next_scan(2000ms);
+  result<scan> got = device->try_scan(2000ms);
+  while (got) got = device->try_scan(2000ms);
   EXPECT_EQ(got.error().code(), problem::reconnecting);
   EXPECT_FALSE(got.error().is_fatal());
   EXPECT_LT(bench.now_ns, 4 * second + 100 * ms);
   EXPECT_EQ(device->ask(requests::health()).error().code(), problem::reconnecting);
   EXPECT_EQ(device->start().error().code(), problem::reconnecting);
-  EXPECT_TRUE(device->next_scan(20'000ms)) << "the lidar is back after a second";
+  EXPECT_TRUE(device->try_scan(20'000ms)) << "the lidar is back after a second";
   EXPECT_GT(bench.now_ns, 5 * second);
 }
 
@@ -161,9 +161,9 @@ TEST(Losses, LongestAndShortestTimeout_AreAccepted) {
   auto device = open_virtual(bench);
   ASSERT_TRUE(device);
   ASSERT_TRUE(device->start());
-  EXPECT_TRUE(device->next_scan(std::chrono::milliseconds::max()));
+  EXPECT_TRUE(device->try_scan(std::chrono::milliseconds::max()));
   const std::int64_t before_ns = bench.now_ns;
-  EXPECT_EQ(device->next_scan(std::chrono::milliseconds::min()).error().code(), problem::timeout);
+  EXPECT_EQ(device->try_scan(std::chrono::milliseconds::min()).error().code(), problem::timeout);
   EXPECT_EQ(device->next_points(std::chrono::milliseconds::min()).has_value(), true);
   EXPECT_LT(bench.now_ns - before_ns, 10 * ms);
 }

@@ -57,7 +57,7 @@ TEST_F(LostPackets, NoScanWithALostPacketIsWhole) {
   ASSERT_TRUE(device->start());
   int whole = 0;
   int damaged = 0;
-  while (const auto scan = device->next_scan(1s)) {
+  while (const auto scan = device->try_scan(1s)) {
     const bool full = scan->points.size() > 1280;
     EXPECT_EQ(scan->is_whole(), full) << scan->revolution << ": " << scan->points.size();
     ++(full ? whole : damaged);
@@ -104,7 +104,7 @@ TEST_F(LostPackets, OnlyAPacketWithWrongAnglesIsUnlikely) {
   ASSERT_TRUE(device) << device.error().message();
   ASSERT_TRUE(device->start());
   std::vector<float> found;
-  while (const auto scan = device->next_scan(1s)) add_unlikely(scan->points, found);
+  while (const auto scan = device->try_scan(1s)) add_unlikely(scan->points, found);
   after_loss.insert(after_loss.end(), expected.begin(), expected.end());
   EXPECT_EQ(found, after_loss);
 }

@@ -164,11 +164,11 @@ TEST(Pace, SavesReadsAndDelaysNoScan) {
   ASSERT_TRUE(lidar);
   ASSERT_TRUE(lidar->start());
   static_cast<void>(lidar->points());  // each packet is wanted
-  while (bench.now_ns < 4 * second) static_cast<void>(lidar->next_scan(500ms));
+  while (bench.now_ns < 4 * second) static_cast<void>(lidar->try_scan(500ms));
   const std::uint64_t before = bench.reads + bench.pauses;
   std::uint64_t scans = 0;
   while (bench.now_ns < 14 * second) {
-    const auto scan = lidar->next_scan(500ms);
+    const auto scan = lidar->try_scan(500ms);
     ASSERT_TRUE(scan);
     ++scans;
     // The transmission of the last packet of a revolution takes 4 ms at most, and its end half a
@@ -185,10 +185,10 @@ TEST(Pace, Wake_EndsAWait) {
   ASSERT_TRUE(lidar);
   ASSERT_TRUE(lidar->start());
   for (int i = 0; i < 100; ++i) {
-    static_cast<void>(lidar->next_scan(9ms));
+    static_cast<void>(lidar->try_scan(9ms));
     const std::int64_t begin_ns = bench.now_ns;
     lidar->wake();
-    const auto woken = lidar->next_scan(2000ms);
+    const auto woken = lidar->try_scan(2000ms);
     ASSERT_FALSE(woken);
     ASSERT_EQ(woken.error().code(), problem::cancelled);
     ASSERT_LT(bench.now_ns - begin_ns, ms);

@@ -56,7 +56,7 @@ TEST(LidarReading, SlowReader_GetsTheNumberOfMissedPoints) {
   auto lidar = open_and_start(bench);
   ASSERT_TRUE(lidar);
   auto reader = lidar->points().make_reader();
-  for (int i = 0; i < 60; ++i) ASSERT_TRUE(lidar->next_scan(2000ms));
+  for (int i = 0; i < 60; ++i) ASSERT_TRUE(lidar->try_scan(2000ms));
   std::vector<point> all(std::size_t{1} << 15U);
   const ring_read read = reader.read(all);
   EXPECT_GT(read.missed, 0U);
@@ -72,7 +72,7 @@ TEST(LidarReading, FirstPointsAfterScans_BeginWithTheUnfinishedRevolution) {
   ASSERT_TRUE(lidar);
   std::int64_t scan_end_ns = 0;
   for (int i = 0; i < 10; ++i) {
-    const auto scan = lidar->next_scan(2000ms);
+    const auto scan = lidar->try_scan(2000ms);
     ASSERT_TRUE(scan);
     scan_end_ns = scan->points.back().time_ns;
   }
@@ -121,11 +121,11 @@ TEST(LidarReading, ReaderOfPoints_BeginsWithTheNextPoint) {
   virtual_bench bench;
   auto lidar = open_and_start(bench);
   ASSERT_TRUE(lidar);
-  for (int i = 0; i < 3; ++i) ASSERT_TRUE(lidar->next_scan(2000ms));
+  for (int i = 0; i < 3; ++i) ASSERT_TRUE(lidar->try_scan(2000ms));
   const std::uint64_t before = lidar->counts().stream.points;
   auto reader = lidar->points().make_reader();
   EXPECT_EQ(reader.ahead(), 0U);
-  for (int i = 0; i < 3; ++i) ASSERT_TRUE(lidar->next_scan(2000ms));
+  for (int i = 0; i < 3; ++i) ASSERT_TRUE(lidar->try_scan(2000ms));
   EXPECT_EQ(reader.ahead(), lidar->counts().stream.points - before);
 }
 
@@ -139,7 +139,7 @@ TEST(LidarReading, EventLoop_GetsEveryScan) {
     // Like poll().
     bench.now_ns = std::max(bench.now_ns, std::min({lidar->event_loop().next_deadline_ns(),
                                                     bench.device.next_ns(bench.now_ns), end}));
-    while (lidar->next_scan(0ms)) ++scans;
+    while (lidar->try_scan(0ms)) ++scans;
   }
   EXPECT_GT(scans, 60U);
   EXPECT_EQ(scans, lidar->counts().scans);
@@ -169,10 +169,10 @@ TEST(LidarReading, Batch_SavesReads) {
     auto lidar = open_and_start(bench, options);
     EXPECT_TRUE(lidar);
     static_cast<void>(lidar->points());  // each packet is wanted
-    while (bench.now_ns < 4 * second) static_cast<void>(lidar->next_scan(500ms));
+    while (bench.now_ns < 4 * second) static_cast<void>(lidar->try_scan(500ms));
     const std::uint64_t before = bench.reads + bench.pauses;
     std::uint64_t scans = 0;
-    while (bench.now_ns < 14 * second) scans += lidar->next_scan(500ms).has_value();
+    while (bench.now_ns < 14 * second) scans += lidar->try_scan(500ms).has_value();
     EXPECT_GT(scans, 65U);
     EXPECT_EQ(lidar->counts().samples_lost, 0U);
     return bench.reads + bench.pauses - before;
@@ -186,11 +186,11 @@ TEST(LidarReading, Wake_EndsOneWait) {
   auto lidar = open_and_start(bench);
   ASSERT_TRUE(lidar);
   lidar->wake();
-  const auto woken = lidar->next_scan(2000ms);
+  const auto woken = lidar->try_scan(2000ms);
   ASSERT_FALSE(woken);
   EXPECT_EQ(woken.error().code(), problem::cancelled);
   EXPECT_FALSE(woken.error().is_fatal());
-  EXPECT_TRUE(lidar->next_scan(2000ms));
+  EXPECT_TRUE(lidar->try_scan(2000ms));
 }
 
 TEST(LidarReading, StartWokenRepeatedly_Completes) {
@@ -203,8 +203,8 @@ TEST(LidarReading, StartWokenRepeatedly_Completes) {
     static_cast<void>(lidar->start());
   }
   ASSERT_TRUE(lidar->is_scanning());
-  auto scan = lidar->next_scan(2000ms);
-  if (!scan && scan.error() == problem::cancelled) scan = lidar->next_scan(2000ms);
+  auto scan = lidar->try_scan(2000ms);
+  if (!scan && scan.error() == problem::cancelled) scan = lidar->try_scan(2000ms);
   EXPECT_TRUE(scan) << scan.error().message();
 }
 
@@ -216,11 +216,11 @@ TEST_P(LidarReadingWith, NothingIsAllocatedWhileItStreams) {
   virtual_bench bench({}, faults);
   auto lidar = open_and_start(bench);
   ASSERT_TRUE(lidar);
-  ASSERT_TRUE(lidar->next_scan(2000ms));
+  ASSERT_TRUE(lidar->try_scan(2000ms));
   int scans = 0;
   const std::size_t allocated = test::allocations_in([&] {
     while (bench.now_ns < 20 * second) {
-      const auto scan = lidar->next_scan(500ms);
+      const auto scan = lidar->try_scan(500ms);
       ASSERT_TRUE(scan || !scan.error().is_fatal()) << scan.error().message();
       scans += scan.has_value();
       static_cast<void>(lidar->next_points(0ms));
@@ -243,7 +243,7 @@ TEST(LidarReading, Scan_IsDeliveredWhenItsEndArrives) {
   auto lidar = open_and_start(bench);
   ASSERT_TRUE(lidar);
   for (int i = 0; i < 20; ++i) {
-    const auto scan = lidar->next_scan(2000ms);
+    const auto scan = lidar->try_scan(2000ms);
     ASSERT_TRUE(scan);
     // The transmission of the last packet takes 4 ms, of the next zero packet 0.5, and the bridge
     // up to 1. The packet behind that, which is not waited for, would take 4 more.

@@ -40,14 +40,14 @@ return_times return_after(std::int64_t outage_ns, bool watches, std::uint64_t se
   auto device = test::open_virtual(bench, options);
   EXPECT_TRUE(device);
   EXPECT_TRUE(device->start());
-  while (bench.now_ns < 3 * second) static_cast<void>(device->next_scan(20ms));
+  while (bench.now_ns < 3 * second) static_cast<void>(device->try_scan(20ms));
   bench.device.unplug(bench.now_ns);
   const std::int64_t back_ns = bench.now_ns + outage_ns;
-  while (bench.now_ns < back_ns) static_cast<void>(device->next_scan(1ms));
+  while (bench.now_ns < back_ns) static_cast<void>(device->try_scan(1ms));
   bench.device.replug(bench.now_ns);
   const std::int64_t replugged_ns = bench.now_ns;
   std::int64_t started_ns = 0;
-  while (!device->next_scan(1ms) && bench.now_ns < replugged_ns + 10 * second) {
+  while (!device->try_scan(1ms) && bench.now_ns < replugged_ns + 10 * second) {
     if (started_ns == 0 && bench.device.is_scanning()) started_ns = bench.now_ns;
   }
   EXPECT_EQ(device->counts().reconnects, 1U);

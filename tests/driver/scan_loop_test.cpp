@@ -161,7 +161,7 @@ TEST(ScanLoop, Wake_EndsItInEveryState) {
   EXPECT_EQ(slow.loop(500ms, 3), 3) << "the next loop continues";
 
   running lost({}, {long_unplug}, true);
-  while (lost.lidar().next_scan(500ms)) {
+  while (lost.lidar().try_scan(500ms)) {
   }
   lost.lidar().wake();
   EXPECT_EQ(lost.loop(500ms, 1), 0);
@@ -260,7 +260,7 @@ TEST(ScanLoop, Left_IsTheLongestWait) {
 
 TEST(SingleCall, ReturnsByItsDeadline_AndNamesWhatIsAwaited) {
   running slow(silent_for(3 * second));
-  const auto early = slow.lidar().next_scan(100ms);
+  const auto early = slow.lidar().try_scan(100ms);
   ASSERT_FALSE(early);
   EXPECT_EQ(early.error(), problem::timeout);
   EXPECT_EQ(early.error().detail(), error_detail::spinning_up);
@@ -270,10 +270,10 @@ TEST(SingleCall, ReturnsByItsDeadline_AndNamesWhatIsAwaited) {
   EXPECT_LE(slow.lidar().event_loop().scan_due_in(), 10s);
 
   running lost({}, {long_unplug}, true);
-  while (lost.lidar().next_scan(500ms)) {
+  while (lost.lidar().try_scan(500ms)) {
   }
   const std::int64_t before_ns = lost.bench.now_ns;
-  const auto away = lost.lidar().next_scan(2s);
+  const auto away = lost.lidar().try_scan(2s);
   ASSERT_FALSE(away);
   EXPECT_LT(lost.bench.now_ns - before_ns, 2 * second + 10 * ms);
   EXPECT_EQ(away.error(), problem::timeout);

@@ -34,7 +34,7 @@ std::vector<std::int64_t> read_scans(lidar& device, test::virtual_bench& bench,
   std::vector<std::int64_t> times;
   const std::int64_t end_ns = bench.now_ns + for_ns;
   while (bench.now_ns < end_ns) {
-    if (device.next_scan(500ms)) times.push_back(bench.now_ns);
+    if (device.try_scan(500ms)) times.push_back(bench.now_ns);
   }
   return times;
 }
@@ -144,7 +144,7 @@ TEST(ScanPaceOfADriver, AnEventLoopIsWokenForScansToo) {
     std::uint64_t turns = 0;
     const std::int64_t end_ns = bench.now_ns + for_ns;
     while (bench.now_ns < end_ns) {
-      while (device.next_scan(0ms)) ++scans;
+      while (device.try_scan(0ms)) ++scans;
       const std::int64_t due_ns = device.event_loop().next_deadline_ns();
       const bool rests = due_ns < bench.now_ns + 100 * ms && due_ns > bench.now_ns;
       bench.now_ns =
@@ -204,7 +204,7 @@ TEST_P(ScanPaceTimes, AreWithinAMillisecondOfTheTruth) {
   lidar device = start_with(bench, {});
   std::vector<point> points;
   while (bench.now_ns < 40 * second) {
-    const auto found = device.next_scan(500ms);
+    const auto found = device.try_scan(500ms);
     ASSERT_TRUE(found) << found.error().message();
     if (bench.now_ns < 8 * second) continue;  // the clock needs 5 s from the start
     points.insert(points.end(), found->begin(), found->end());

@@ -78,7 +78,7 @@ TEST_P(spin_up, IsWaitedForWithOneStartCommand) {
   ASSERT_TRUE(lidar->start());
   const std::int64_t started_ns = clock.now_ns();
   result<scan> first = failure(task::reading, problem::timeout);
-  while (!first && clock.now_ns() < started_ns + 20 * second) first = lidar->next_scan(500ms);
+  while (!first && clock.now_ns() < started_ns + 20 * second) first = lidar->try_scan(500ms);
   ASSERT_TRUE(first);
   // At 7 Hz the first whole revolution ends at most two turns after the first packet.
   EXPECT_LE(clock.now_ns() - started_ns, std::max(GetParam() * ms, 600 * ms) + 300 * ms);
@@ -101,7 +101,7 @@ std::int64_t given_up_ns(const sim::fault& fault, std::int64_t silence_ns) {
   if (!lidar || !lidar->start()) return 0;
   const std::int64_t started_ns = clock.now_ns();
   while (clock.now_ns() < started_ns + 100 * second) {
-    const auto found = lidar->next_scan(500ms);
+    const auto found = lidar->try_scan(500ms);
     if (found || !found.error().is_fatal()) continue;
     EXPECT_EQ(found.error().code(), problem::brown_out) << found.error().message();
     return clock.now_ns() - started_ns;
@@ -137,7 +137,7 @@ TEST(SpinUp, SlowDeviceUnderUnknownProtection_StartsAfterEachReconnect) {
   ASSERT_TRUE(lidar->start());
   std::int64_t last_ns = 0;
   while (clock.now_ns() < 50 * second) {
-    if (lidar->next_scan(500ms)) last_ns = clock.now_ns();
+    if (lidar->try_scan(500ms)) last_ns = clock.now_ns();
   }
   EXPECT_EQ(lidar->counts().reconnects, 1U);
   EXPECT_GT(last_ns, 49 * second);
@@ -157,7 +157,7 @@ TEST(SpinUp, SlowDeviceUnderUnknownProtection_StartsAfterARestart) {
   ASSERT_TRUE(lidar->start());
   const auto has_scan = [&] {
     for (int i = 0; i < 40; ++i) {
-      if (lidar->next_scan(500ms)) return true;
+      if (lidar->try_scan(500ms)) return true;
     }
     return false;
   };

@@ -81,9 +81,9 @@ TEST(Timeout, OfALoop_WithASlowMotor_StatesThatPacketsArrive) {
 
 TEST(Timeout, OfACall_WithASlowMotor_StatesThatPacketsArrive) {
   slow_lidar slow(140);
-  while (slow->counts().scans == 0) static_cast<void>(slow->next_scan(100ms));
-  expect_slow(slow->next_scan(0ms).error());
-  expect_slow(slow->next_scan(300ms).error());
+  while (slow->counts().scans == 0) static_cast<void>(slow->try_scan(100ms));
+  expect_slow(slow->try_scan(0ms).error());
+  expect_slow(slow->try_scan(300ms).error());
   while (slow->next_points(0ms)) {  // those that have come
   }
   EXPECT_EQ(slow->next_points(0ms).error().detail(), error_detail::usual)
@@ -101,7 +101,7 @@ TEST(Timeout, OfAFile_IsNotThatOfALidar) {
   ASSERT_TRUE(lidar);
   ASSERT_TRUE(lidar->start());
   lidar->player()->pause(true);
-  for (const error& why : {lidar->next_scan(1ms).error(), lidar->next_points(1ms).error()}) {
+  for (const error& why : {lidar->try_scan(1ms).error(), lidar->next_points(1ms).error()}) {
     EXPECT_EQ(why.detail(), error_detail::of_file);
     EXPECT_NE(why.message().find("paused"), std::string::npos) << why.message();
     EXPECT_EQ(why.message().find("nplug"), std::string::npos) << why.message();
@@ -142,9 +142,9 @@ TEST(Timeout, OfAScanWhoseBytesAreNoPackets_StatesTheirNumber) {
     auto lidar = open_virtual(bench, {.model = model_named(word)});
     ASSERT_TRUE(lidar) << word << lidar.error().message();
     ASSERT_TRUE(lidar->start());
-    auto found = lidar->next_scan(500ms);
+    auto found = lidar->try_scan(500ms);
     while (bench.now_ns < 60 * second_ns && (found || !found.error().is_fatal()))
-      found = lidar->next_scan(500ms);
+      found = lidar->try_scan(500ms);
     ASSERT_FALSE(found) << word;
     const std::string text = found.error().message();
     EXPECT_EQ(found.error(), problem::garbage) << text;

@@ -43,10 +43,10 @@ lidar_options at_4_khz() {
 
 void expect_settings_and_times(virtual_bench& bench, lidar& device) {
   ASSERT_TRUE(device.is_scanning());
-  for (int i = 0; i < 5; ++i) ASSERT_TRUE(device.next_scan(2000ms)) << i;
+  for (int i = 0; i < 5; ++i) ASSERT_TRUE(device.try_scan(2000ms)) << i;
   EXPECT_EQ(bench.device.settings().sample_rate, sample_rate::khz_4);
   EXPECT_EQ(bench.device.settings().scan_frequency_chz, 1000);
-  const auto scan = device.next_scan(2000ms);
+  const auto scan = device.try_scan(2000ms);
   ASSERT_TRUE(scan);
   const auto took_ns = scan->points.back().time_ns - scan->points.front().time_ns;
   EXPECT_NEAR(static_cast<double>(took_ns) / static_cast<double>(scan->points.size() - 1), 250e3,
@@ -81,7 +81,7 @@ TEST(UnnoticedReboot, WhenTheScanIsResumed) {
   auto device = open_virtual(bench, at_4_khz());
   ASSERT_TRUE(device);
   ASSERT_TRUE(device->start());
-  while (bench.now_ns < 4100 * ms) static_cast<void>(device->next_scan(500ms));
+  while (bench.now_ns < 4100 * ms) static_cast<void>(device->try_scan(500ms));
   EXPECT_TRUE(device->ask(requests::health(), while_scanning::stop_and_resume));
   expect_settings_and_times(bench, *device);
 }
@@ -96,7 +96,7 @@ TEST(UnnoticedReboot, UnderKeepAlives) {
   auto device = open_virtual(bench, options);
   ASSERT_TRUE(device);
   ASSERT_TRUE(device->start());
-  while (bench.now_ns < 5000 * ms) static_cast<void>(device->next_scan(500ms));
+  while (bench.now_ns < 5000 * ms) static_cast<void>(device->try_scan(500ms));
   const auto event = device->next_event();
   ASSERT_TRUE(event);
   EXPECT_EQ(event->what, lidar_event::kind::restarted);
@@ -121,8 +121,8 @@ TEST(UnnoticedReboot, StopThatNoticesIt_SetsNothingUp) {
     auto device = open_virtual(bench, at_4_khz());
     ASSERT_TRUE(device);
     ASSERT_TRUE(device->start());
-    ASSERT_TRUE(device->next_scan(2000ms));
-    while (device->next_scan(400ms)) {
+    ASSERT_TRUE(device->try_scan(2000ms));
+    while (device->try_scan(400ms)) {
     }
     ASSERT_TRUE(device->is_scanning());
     ASSERT_FALSE(device->next_event());
@@ -136,7 +136,7 @@ TEST(UnnoticedReboot, StopThatNoticesIt_SetsNothingUp) {
     EXPECT_FALSE(device->is_scanning());
     EXPECT_TRUE(bench.device.is_idle_and_silent(bench.now_ns));
     EXPECT_EQ(times_in(bench.device, 0x60), 0);
-    EXPECT_EQ(device->next_scan(500ms).error(), problem::not_scanning);
+    EXPECT_EQ(device->try_scan(500ms).error(), problem::not_scanning);
   }
 }
 
@@ -146,7 +146,7 @@ TEST(UnnoticedReboot, StopAfterAWokenRestart_SetsNothingUp) {
   auto device = open_virtual(bench, at_4_khz());
   ASSERT_TRUE(device);
   ASSERT_TRUE(device->start());
-  ASSERT_TRUE(device->next_scan(5000ms));
+  ASSERT_TRUE(device->try_scan(5000ms));
   bench.device.clear_log();
   device->wake();
   const auto woken = device->ask(requests::restart(), while_scanning::stop_and_resume);

@@ -39,7 +39,7 @@ TEST(Waking, EveryCallWoken_StillReads) {
   for (int i = 0; i < 5; ++i) {
     // A revolution takes 143 ms, the first one and the start of the motor a second more.
     const int calls =
-        calls_until(bench, *device, [&] { return device->next_scan(1000ms).has_value(); });
+        calls_until(bench, *device, [&] { return device->try_scan(1000ms).has_value(); });
     EXPECT_LT(calls, 1500) << i;
   }
   EXPECT_EQ(device->counts().samples_lost, 0U);
@@ -83,7 +83,7 @@ TEST(Waking, WokenAsk_IsRepeatedAfterOtherCalls) {
 }
 
 // For every time of the wake, also together with the last answer that the start waits for.
-TEST(Waking, WokenStart_ContinuesInNextScan) {
+TEST(Waking, WokenStart_ContinuesInTryScan) {
   virtual_bench bench;
   auto device = open_virtual(bench);
   ASSERT_TRUE(device);
@@ -91,7 +91,7 @@ TEST(Waking, WokenStart_ContinuesInNextScan) {
     EXPECT_EQ(device->start().error().code(), problem::cancelled);
     return device->is_scanning();
   });
-  EXPECT_TRUE(device->next_scan(5000ms));
+  EXPECT_TRUE(device->try_scan(5000ms));
 }
 
 TEST(Waking, WokenStart_ContinuesInEveryCall) {
@@ -101,7 +101,7 @@ TEST(Waking, WokenStart_ContinuesInEveryCall) {
   device->wake();
   EXPECT_EQ(device->start().error().code(), problem::cancelled);
   EXPECT_FALSE(device->is_scanning());
-  EXPECT_TRUE(device->next_scan(5000ms));
+  EXPECT_TRUE(device->try_scan(5000ms));
   EXPECT_TRUE(device->is_scanning());
   EXPECT_TRUE(device->start());
 }
@@ -114,8 +114,8 @@ TEST(Waking, WokenStart_ReportsItsResult) {
   ASSERT_TRUE(device);
   device->wake();
   EXPECT_EQ(device->start().error().code(), problem::cancelled);
-  EXPECT_EQ(device->next_scan(5000ms).error().code(), problem::unhealthy);
-  EXPECT_EQ(device->next_scan(10ms).error().code(), problem::not_scanning);
+  EXPECT_EQ(device->try_scan(5000ms).error().code(), problem::unhealthy);
+  EXPECT_EQ(device->try_scan(10ms).error().code(), problem::not_scanning);
   EXPECT_FALSE(device->is_scanning());
   EXPECT_EQ(device->start().error().code(), problem::unhealthy);
 }
@@ -129,15 +129,15 @@ TEST(Waking, WokenStart_IsRepeatedAfterAnUnplug) {
   device->wake();
   EXPECT_EQ(device->start().error().code(), problem::cancelled);
   bench.device.unplug(bench.now_ns);
-  EXPECT_EQ(device->next_scan(200ms).error().code(), problem::reconnecting);
-  EXPECT_EQ(device->next_scan(200ms).error().code(), problem::timeout);
+  EXPECT_EQ(device->try_scan(200ms).error().code(), problem::reconnecting);
+  EXPECT_EQ(device->try_scan(200ms).error().code(), problem::timeout);
   bench.device.replug(bench.now_ns);
   const std::int64_t end_ns = bench.now_ns + 10'000 * ms;
   while (device->counts().reconnects == 0 && bench.now_ns < end_ns) {
-    static_cast<void>(device->next_scan(100ms));
+    static_cast<void>(device->try_scan(100ms));
   }
   EXPECT_EQ(device->counts().reconnects, 1U);
-  EXPECT_TRUE(device->next_scan(5000ms));
+  EXPECT_TRUE(device->try_scan(5000ms));
 }
 
 TEST(Waking, WokenStop_IsNotScanning) {
@@ -145,11 +145,11 @@ TEST(Waking, WokenStop_IsNotScanning) {
   auto device = open_virtual(bench);
   ASSERT_TRUE(device);
   ASSERT_TRUE(device->start());
-  ASSERT_TRUE(device->next_scan(5000ms));
+  ASSERT_TRUE(device->try_scan(5000ms));
   device->wake();
   EXPECT_EQ(device->stop().error().code(), problem::cancelled);
   EXPECT_FALSE(device->is_scanning());
-  EXPECT_EQ(device->next_scan(10ms).error().code(), problem::not_scanning);
+  EXPECT_EQ(device->try_scan(10ms).error().code(), problem::not_scanning);
   EXPECT_TRUE(device->stop());
   EXPECT_TRUE(bench.device.is_idle_and_silent(bench.now_ns));
 }

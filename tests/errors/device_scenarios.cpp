@@ -58,7 +58,7 @@ trouble once_scanning(bench& on, Does does, const lidar_options& options = {}) {
 /// The loop of an application, for a minute.
 trouble application(lidar& device, const bench& on) {
   while (on.clock.now_ns() < 60 * second) {
-    const auto scan = device.next_scan(500ms);
+    const auto scan = device.try_scan(500ms);
     if (!scan && scan.error().is_fatal()) return scan.error();
   }
   return std::nullopt;
@@ -120,7 +120,7 @@ trouble frequency_of_an_x4() {
 trouble deaf_when_stopped() {
   bench on({make_fault(fault_kind::deaf, later)});
   return once_scanning(on, [&](lidar& device) {
-    while (on.clock.now_ns() < later) static_cast<void>(device.next_scan(500ms));
+    while (on.clock.now_ns() < later) static_cast<void>(device.try_scan(500ms));
     return error_in(device.stop());
   });
 }
@@ -128,7 +128,7 @@ trouble deaf_when_stopped() {
 trouble deaf_when_asked() {
   bench on({make_fault(fault_kind::deaf, later)});
   return once_scanning(on, [&](lidar& device) {
-    while (on.clock.now_ns() < later) static_cast<void>(device.next_scan(500ms));
+    while (on.clock.now_ns() < later) static_cast<void>(device.try_scan(500ms));
     return error_in(device.ask(requests::health(), while_scanning::stop_and_resume));
   });
 }
@@ -140,7 +140,7 @@ trouble health_error() {
 
 trouble no_scan_yet() {
   bench on;
-  return once_scanning(on, [](lidar& device) { return error_in(device.next_scan(10ms)); });
+  return once_scanning(on, [](lidar& device) { return error_in(device.try_scan(10ms)); });
 }
 
 trouble frequency_too_high() {
@@ -156,9 +156,9 @@ trouble looked_for() {
   lidar_options options;
   options.reconnect = true;
   const auto wait = [](lidar& device) {
-    while (device.next_scan(2s)) {
+    while (device.try_scan(2s)) {
     }
-    return error_in(device.next_scan(100ms));
+    return error_in(device.try_scan(100ms));
   };
   return once_scanning(on, wait, options);
 }
@@ -188,7 +188,7 @@ trouble asked_while_scanning() {
 
 trouble read_before_start() {
   bench on;
-  return once_open(on, [](lidar& device) { return error_in(device.next_scan(10ms)); });
+  return once_open(on, [](lidar& device) { return error_in(device.try_scan(10ms)); });
 }
 
 /// The first error of a call that is repeated, with reconnecting on, until the unplug.
@@ -237,7 +237,7 @@ trouble woken() {
   bench on;
   return once_scanning(on, [](lidar& device) {
     device.wake();
-    return error_in(device.next_scan(500ms));
+    return error_in(device.try_scan(500ms));
   });
 }
 
@@ -289,7 +289,7 @@ std::vector<scenario> device_scenarios() {
       {"UnpluggedWhileScanning", gone, task::reading, true, "virtual:g4",
        [] { return running({make_fault(fault_kind::unplug, later)}); }},
       {"LostWhileWaitingForAScan", reconnecting, task::reading, false, "virtual:g4, gone",
-       [] { return unplugged_with_reconnecting([](lidar& on) { return on.next_scan(2s); }); }},
+       [] { return unplugged_with_reconnecting([](lidar& on) { return on.try_scan(2s); }); }},
       {"LostWhileWaitingForPoints", reconnecting, task::reading, false, "virtual:g4, gone",
        [] { return unplugged_with_reconnecting([](lidar& on) { return on.next_points(2s); }); }},
       {"UnpluggedWhenIdle", gone, task::writing, true, "virtual:g4", unplugged_when_idle},

@@ -55,7 +55,7 @@ std::vector<lidar_event> lived(const story& of) {
   static_cast<void>(device->start());
   bool is_asleep = of.asleep_ns > 0;
   while (clock.now_ns() < 12 * second) {
-    const auto scan = device->next_scan(500ms);
+    const auto scan = device->try_scan(500ms);
     EXPECT_TRUE(scan || !scan.error().is_fatal()) << scan.error().message();
     if (!scan && scan.error().is_fatal()) break;
     if (is_asleep && clock.now_ns() > 4 * second) {
@@ -117,9 +117,9 @@ TEST(Events, OldestAreDroppedAndThatIsReported) {
   ASSERT_TRUE(device->start());
   for (int replug = 0; replug < 20; ++replug) {
     simulated.unplug(clock.now_ns());
-    static_cast<void>(device->next_scan(100ms));
+    static_cast<void>(device->try_scan(100ms));
     simulated.replug(clock.now_ns());
-    for (int tries = 0; tries < 10 && !device->next_scan(500ms); ++tries) {
+    for (int tries = 0; tries < 10 && !device->try_scan(500ms); ++tries) {
     }
   }
   std::vector<kind> reported;

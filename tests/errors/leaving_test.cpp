@@ -24,9 +24,9 @@ TEST(GivenUp, GetsAStopCommand) {
   auto device = lidar::open(std::make_unique<sim::virtual_connector>(simulated, clock));
   ASSERT_TRUE(device);
   ASSERT_TRUE(device->start());
-  result<scan> got = device->next_scan(500ms);
+  result<scan> got = device->try_scan(500ms);
   while (clock.now_ns() < 60 * second && (got || !got.error().is_fatal())) {
-    got = device->next_scan(500ms);
+    got = device->try_scan(500ms);
   }
   ASSERT_FALSE(got);
   EXPECT_EQ(got.error().code(), problem::stalled);

@@ -223,7 +223,7 @@ trouble recording_ends() {
   auto recording = lidar::open("file:" + file.path());
   if (!recording) return recording.error();
   if (auto started = recording->start(); !started) return started.error();
-  return error_in(recording->next_scan(500ms));
+  return error_in(recording->try_scan(500ms));
 }
 
 trouble recording_asked() {

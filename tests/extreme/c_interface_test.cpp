@@ -219,7 +219,7 @@ TEST_F(SimulatedLidar, SettingsAndTimes) {
     const g4lidar_scan* scan = nullptr;
     const g4lidar_point* points = nullptr;
     std::size_t count = 0;
-    use(g4lidar_next_scan(lidar_, timeout_ms, &scan, nullptr));
+    use(g4lidar_try_scan(lidar_, timeout_ms, &scan, nullptr));
     use(g4lidar_wait_scan(lidar_, timeout_ms, &scan, nullptr));
     use(g4lidar_next_points(lidar_, timeout_ms, &points, &count, nullptr));
   }

@@ -110,7 +110,7 @@ TEST(ExtremeLidar, RecordingsOfAnyTime) {
             use(played->length_ns());
             use(played->wall_ns(any<std::int64_t>(random)));
           }
-          const auto got = opened->next_scan(0ms);
+          const auto got = opened->try_scan(0ms);
           if (got) {
             use(got->end_ns());
             feed.follow(got->points, [](const stamped_odometry& what) { use(what); });
@@ -187,9 +187,9 @@ TEST(ExtremeLidar, Timeouts) {
   auto opened = lidar::open("sim:");
   ASSERT_TRUE(opened) << opened.error().message();
   ASSERT_TRUE(opened->start());
-  EXPECT_FALSE(opened->next_scan(lidar::milliseconds::min()));
+  EXPECT_FALSE(opened->try_scan(lidar::milliseconds::min()));
   use(opened->next_points(lidar::milliseconds::min()).has_value());
-  EXPECT_TRUE(opened->next_scan(lidar::milliseconds::max()));
+  EXPECT_TRUE(opened->try_scan(lidar::milliseconds::max()));
   auto none = opened->scans(lidar::milliseconds::min());
   EXPECT_EQ(none.begin(), none.end());
   auto all = opened->scans(lidar::milliseconds::max());

@@ -17,7 +17,7 @@ int main(void) {
   if (g4lidar_simulator_create(&options, &simulator, NULL)) return 1;
   if (g4lidar_open_simulated(simulator, NULL, &lidar, NULL) == G4LIDAR_OK) {
     if (g4lidar_start(lidar, NULL) == G4LIDAR_OK &&
-        g4lidar_next_scan(lidar, 2000, &scan, NULL) == G4LIDAR_OK) {
+        g4lidar_try_scan(lidar, 2000, &scan, NULL) == G4LIDAR_OK) {
       code = scan->is_whole ? 0 : 1;
     }
     g4lidar_free(lidar);

@@ -16,6 +16,6 @@ int main() {
   auto lidar =
       g4lidar::lidar::open(std::make_unique<g4lidar::sim::virtual_connector>(simulated, clock));
   if (!lidar || !lidar->start()) return 1;
-  const auto scan = lidar->next_scan(2000ms);
+  const auto scan = lidar->try_scan(2000ms);
   return scan && scan->is_whole() ? 0 : 1;
 }

@@ -10,9 +10,9 @@ using namespace std::chrono_literals;
 float misuse(g4lidar::lidar& lidar) {
   float sum = 0;
 #ifdef MISUSE
-  for (const g4lidar::point& p : lidar.next_scan(2s)->points) sum += p.range_mm;
+  for (const g4lidar::point& p : lidar.try_scan(2s)->points) sum += p.range_mm;
 #else
-  const auto scan = lidar.next_scan(2s);
+  const auto scan = lidar.try_scan(2s);
   for (const g4lidar::point& p : scan->points) sum += p.range_mm;
 #endif
   return sum;

@@ -42,7 +42,7 @@ template <class Between>
 std::vector<readings> whole_scans(lidar& device, int count, Between&& between) {
   std::vector<readings> all;
   for (int i = 0; i < count; ++i) {
-    const auto scan = device.next_scan(test::patience);
+    const auto scan = device.try_scan(test::patience);
     EXPECT_TRUE(scan) << scan.error().message() << " after " << i;
     if (!scan) break;
     if (scan->is_whole()) all.push_back(test::readings_of(*scan));
@@ -277,7 +277,7 @@ TEST(RealTime, Port_IsNotOpenedTwice) {
   const auto second = lidar::open(simulated.path());
   ASSERT_FALSE(second);
   EXPECT_EQ(second.error().code(), problem::busy) << second.error().message();
-  EXPECT_TRUE(device->next_scan(test::patience));
+  EXPECT_TRUE(device->try_scan(test::patience));
 }
 
 /// For each scan, the time from the transmission of the zero packet that ends it to its delivery.
@@ -292,7 +292,7 @@ std::vector<std::chrono::nanoseconds> delays_of(int count) {
   std::vector<std::int64_t> handed_ns;
   std::vector<readings> scans;
   while (device && static_cast<int>(scans.size()) < count) {
-    const auto scan = device->next_scan(test::patience);
+    const auto scan = device->try_scan(test::patience);
     handed_ns.push_back(clock::now().time_since_epoch().count() - offset_ns);
     EXPECT_TRUE(scan) << scan.error().message();
     if (!scan) break;
@@ -338,7 +338,7 @@ TEST(RealTime, FirstScan_ArrivesSoon) {
     const auto begin = clock::now();
     auto device = started(simulated);
     EXPECT_TRUE(device) << device.error().message();
-    EXPECT_TRUE(device && device->next_scan(test::patience));
+    EXPECT_TRUE(device && device->try_scan(test::patience));
     return clock::now() - begin;
   });
 }

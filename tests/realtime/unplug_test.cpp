@@ -53,7 +53,7 @@ std::vector<activity> activities() {
          if (auto started = device.start(); !started) return started;
          return device.stop();
        }},
-      {"scanning", true, [](lidar& device) { return without_value(device.next_scan(5s)); }},
+      {"scanning", true, [](lidar& device) { return without_value(device.try_scan(5s)); }},
       {"taking points", true, [](lidar& device) { return without_value(device.next_points(5s)); }},
       {"asking while scanning", true,
        [](lidar& device) {
@@ -132,7 +132,7 @@ TEST_P(Unplug, Reconnect_RestoresTheState) {
 
   ASSERT_TRUE(device->start());
   EXPECT_EQ(device->information().serial_number(), "2021101000070073");
-  const auto scan = device->next_scan(test::patience);
+  const auto scan = device->try_scan(test::patience);
   ASSERT_TRUE(scan) << scan.error().message();
   EXPECT_EQ(simulated.settings().scan_frequency_chz, 1000);
   ASSERT_TRUE(device->stop());
@@ -184,7 +184,7 @@ TEST(Unplug, RepeatedDuringReconnects) {
   const auto read_for = [&](std::chrono::milliseconds time) {
     const auto end = clock::now() + time;
     while (clock::now() < end) {
-      const auto scan = device->next_scan(5ms);
+      const auto scan = device->try_scan(5ms);
       EXPECT_TRUE(scan || !scan.error().is_fatal()) << scan.error().message();
     }
   };
@@ -198,7 +198,7 @@ TEST(Unplug, RepeatedDuringReconnects) {
   const auto end = clock::now() + test::patience;
   while (device->counts().reconnects == before && clock::now() < end) read_for(20ms);
   EXPECT_GT(device->counts().reconnects, before);
-  EXPECT_TRUE(device->next_scan(test::patience));
+  EXPECT_TRUE(device->try_scan(test::patience));
   // Each loss and each reconnect is reported once, in turn.
   bool is_lost = false;
   while (const auto event = device->next_event()) {
@@ -228,13 +228,13 @@ TEST(Unplug, Return_IsNoticedAtOnce) {
       how.device = simulated.path();
       how.reconnect = true;
       auto device = lidar::open(how);
-      EXPECT_TRUE(device && device->start() && device->next_scan(test::patience));
+      EXPECT_TRUE(device && device->start() && device->try_scan(test::patience));
       simulated.unplug();
       const auto back = clock::now() + outage;
-      while (clock::now() < back) static_cast<void>(device->next_scan(10ms));
+      while (clock::now() < back) static_cast<void>(device->try_scan(10ms));
       simulated.replug();
       const auto begin = clock::now();
-      while (!device->next_scan(100ms) && clock::now() < begin + test::patience) {
+      while (!device->try_scan(100ms) && clock::now() < begin + test::patience) {
       }
       return clock::now() - begin;
     };
@@ -259,11 +259,11 @@ TEST(Unplug, OtherDevice_IsNotUsed) {
   auto device = lidar::open(options);
   ASSERT_TRUE(device) << device.error().message();
   ASSERT_TRUE(device->start());
-  ASSERT_TRUE(device->next_scan(test::patience));
+  ASSERT_TRUE(device->try_scan(test::patience));
   const auto read_for = [&](std::chrono::milliseconds time) {
     std::size_t scans = 0;
     const auto end = clock::now() + time;
-    while (clock::now() < end) scans += device->next_scan(50ms) ? 1U : 0U;
+    while (clock::now() < end) scans += device->try_scan(50ms) ? 1U : 0U;
     return scans;
   };
   simulated.reset();
@@ -276,7 +276,7 @@ TEST(Unplug, OtherDevice_IsNotUsed) {
   const auto end = clock::now() + test::patience;
   while (device->counts().reconnects == 0 && clock::now() < end) read_for(100ms);
   EXPECT_EQ(device->counts().reconnects, 1U);
-  EXPECT_TRUE(device->next_scan(test::patience));
+  EXPECT_TRUE(device->try_scan(test::patience));
 }
 
 }  // namespace

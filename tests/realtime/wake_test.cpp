@@ -25,7 +25,7 @@ using clock = std::chrono::steady_clock;
 /// The outcome of a long wait for a revolution that does not arrive.
 result<scan> wait_for_nothing(lidar& device) {
   while (true) {
-    auto scan = device.next_scan(10min);
+    auto scan = device.try_scan(10min);
     if (!scan) return scan;
   }
 }
@@ -52,7 +52,7 @@ TEST(Wake, EndsAWaitFromAnotherThread) {
   EXPECT_GE(clock::now() - begin, 200ms);
   EXPECT_LT(clock::now() - begin, test::patience);
   other.join();
-  EXPECT_EQ(device->next_scan(10ms).error().code(), problem::timeout);  // once
+  EXPECT_EQ(device->try_scan(10ms).error().code(), problem::timeout);  // once
 }
 
 std::atomic<lidar*> to_wake = nullptr;
@@ -80,7 +80,7 @@ TEST(Wake, EndsAWaitFromASignalHandler) {
   other.join();
   to_wake = nullptr;
   ::sigaction(SIGUSR2, &before, nullptr);
-  EXPECT_TRUE(device->next_scan(test::patience));
+  EXPECT_TRUE(device->try_scan(test::patience));
 }
 
 // Also while transports are opened and closed: a handler that interrupts that finds everything
@@ -118,10 +118,10 @@ TEST(Wake, ManyFromASignalHandler_DelayNothing) {
     std::this_thread::sleep_for(20ms);
     simulated.replug();
     EXPECT_TRUE(does([&] {
-      static_cast<void>(device->next_scan(100ms));
+      static_cast<void>(device->try_scan(100ms));
       return device->counts().reconnects >= plugs;
     }));
-    EXPECT_TRUE(does([&] { return device->next_scan(100ms).has_value(); }));
+    EXPECT_TRUE(does([&] { return device->try_scan(100ms).has_value(); }));
   }
   EXPECT_TRUE(does([&] {
     return device->ask(requests::health(), while_scanning::stop_and_resume).has_value();

@@ -88,14 +88,14 @@ TEST_P(SlowReplay, ReturnsByTheTimeout_IsWokenAndReported) {
   ASSERT_TRUE(device->start());
   const auto begin = clock::now();
   for (int i = 0; i < 3; ++i) {
-    EXPECT_EQ(device->next_scan(20ms).error().code(), problem::timeout);
+    EXPECT_EQ(device->try_scan(20ms).error().code(), problem::timeout);
   }
   EXPECT_LT(clock::now() - begin, test::patience) << "that would be years";
   std::thread waker([&] {
     std::this_thread::sleep_for(20ms);
     device->wake();
   });
-  EXPECT_EQ(device->next_scan(std::chrono::milliseconds::max()).error().code(), problem::cancelled);
+  EXPECT_EQ(device->try_scan(std::chrono::milliseconds::max()).error().code(), problem::cancelled);
   waker.join();
   const auto event = device->next_event();
   ASSERT_TRUE(event);

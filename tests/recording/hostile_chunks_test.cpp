@@ -184,7 +184,7 @@ TEST_F(HostileChunks, WokenReplay_ReturnsOnceWithCancelled) {
     ASSERT_TRUE(device->start());
     std::size_t cancelled = 0;
     while (true) {
-      const auto scan = device->next_scan(std::chrono::seconds(100));
+      const auto scan = device->try_scan(std::chrono::seconds(100));
       ASSERT_FALSE(scan);
       if (scan.error() == problem::end_of_input) break;
       ASSERT_EQ(scan.error(), problem::cancelled);

@@ -94,7 +94,7 @@ TEST_F(Player, Seek_AcrossTheEndsCountsAsTheEnds) {
   EXPECT_EQ(on.position_ns(), 0);
   ASSERT_TRUE(on.seek(std::numeric_limits<std::int64_t>::max()));
   EXPECT_EQ(on.position_ns(), on.length_ns());
-  EXPECT_EQ(device.next_scan(500ms).error(), problem::end_of_input);
+  EXPECT_EQ(device.try_scan(500ms).error(), problem::end_of_input);
 }
 
 TEST_F(Player, Pause_StandsStillUntilItEnds) {
@@ -105,8 +105,8 @@ TEST_F(Player, Pause_StandsStillUntilItEnds) {
   EXPECT_TRUE(on.is_paused());
   const std::int64_t position_ns = on.position_ns();
   const auto begun = clock::now();
-  auto found = device.next_scan(100ms);
-  while (found) found = device.next_scan(100ms);  // what was read before
+  auto found = device.try_scan(100ms);
+  while (found) found = device.try_scan(100ms);  // what was read before
   EXPECT_EQ(found.error(), problem::timeout);
   EXPECT_GE(clock::now() - begun, 100ms);
   EXPECT_EQ(on.position_ns(), position_ns);
@@ -114,19 +114,19 @@ TEST_F(Player, Pause_StandsStillUntilItEnds) {
   device.wake();
   EXPECT_EQ(device.wait_scan(100ms).error(), problem::cancelled) << "a loop waits without limit";
   on.pause(false);
-  EXPECT_TRUE(device.next_scan(patience));
+  EXPECT_TRUE(device.try_scan(patience));
 }
 
 TEST_F(Player, Speed_ChangesFromNowOn) {
   lidar device = play({.speed = 1e-6});
   player& on = *device.player();
-  EXPECT_EQ(device.next_scan(50ms).error(), problem::timeout);
+  EXPECT_EQ(device.try_scan(50ms).error(), problem::timeout);
   ASSERT_TRUE(on.set_speed(1));
   EXPECT_EQ(on.speed(), 1.0);
   const auto begun = clock::now();
   ASSERT_TRUE(on.seek(2 * second));
   const auto next_end_ns = [&] {
-    const auto found = device.next_scan(patience);
+    const auto found = device.try_scan(patience);
     return found ? found->end_ns() : 0;
   };
   const std::int64_t first_ns = next_end_ns();
@@ -187,7 +187,7 @@ TEST_F(Player, Speed_ChangesDuringACall_ItsEndStaysThatOfTheCaller) {
         std::move(*replay::open(path_.text(), {.speed = 1e-6})), change));
     change = {device.player(), 1000};
     // At the speed of its begin the call would end 60 microseconds later in the recording.
-    const auto found = in_loop ? device.wait_scan(patience) : device.next_scan(patience);
+    const auto found = in_loop ? device.wait_scan(patience) : device.try_scan(patience);
     EXPECT_TRUE(found) << found.error().message();
   }
   speed_change change;
@@ -196,7 +196,7 @@ TEST_F(Player, Speed_ChangesDuringACall_ItsEndStaysThatOfTheCaller) {
   change = {device.player(), 1e-6};
   // At the speed of its begin it would end 200 microseconds later in the recording, which are now 200 s.
   const auto begun = clock::now();
-  EXPECT_EQ(device.next_scan(200ms).error(), problem::timeout);
+  EXPECT_EQ(device.try_scan(200ms).error(), problem::timeout);
   EXPECT_GE(clock::now() - begun, 200ms);
   EXPECT_LT(clock::now() - begun, patience);
 }

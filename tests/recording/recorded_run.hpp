@@ -100,7 +100,7 @@ inline run_result replayed(std::unique_ptr<connector> from, bool by_scans = true
   while (true) {
     result<void> done;
     if (by_scans) {
-      const auto scan = opened->next_scan(1000ms);
+      const auto scan = opened->try_scan(1000ms);
       if (scan) run.scans.emplace_back(scan->points.begin(), scan->points.end());
       if (!scan) done = tl::unexpected(scan.error());
     } else {
@@ -143,7 +143,7 @@ inline void record_device(recording_writer& into, std::int64_t until_ns,
   if (with_metadata) into.device(known);
   ASSERT_TRUE(device->start());
   while (bench.now_ns < until_ns) {
-    const auto scan = device->next_scan(std::chrono::milliseconds(500));
+    const auto scan = device->try_scan(std::chrono::milliseconds(500));
     if (scan) into.scan(*scan);
   }
 }

@@ -26,7 +26,7 @@ class program {
   void step(run_result& run) {
     const unsigned what = static_cast<unsigned>(dice_() % 100);
     if (what < 60) {
-      const auto scan = device_.next_scan(300ms);
+      const auto scan = device_.try_scan(300ms);
       if (scan) run.scans.emplace_back(scan->points.begin(), scan->points.end());
     } else if (what < 80) {
       static_cast<void>(device_.next_points(20ms));
@@ -83,7 +83,7 @@ run_result live(const run_case& of, std::uint64_t seed, recording_writer& into) 
     static_cast<void>(device->start());
     while (bench.now_ns < 15 * second) {
       if (of.only_scans) {
-        const auto scan = device->next_scan(500ms);
+        const auto scan = device->try_scan(500ms);
         if (scan) run.scans.emplace_back(scan->points.begin(), scan->points.end());
         std::array<sim::sent_sample, 256> some;
         while (const std::size_t count = bench.device.take_truth(some)) {

@@ -49,7 +49,7 @@ TEST(ReplayTransport, OpensByItsPathLikeADevice) {
     ASSERT_FALSE(asked);
     EXPECT_EQ(asked.error().code(), problem::read_only);
     ASSERT_TRUE(device->start());
-    const auto scan = device->next_scan(3000ms);
+    const auto scan = device->try_scan(3000ms);
     ASSERT_TRUE(scan) << scan.error().message();
     EXPECT_GT(scan->points.size(), 1000U);
   }
@@ -75,11 +75,11 @@ TEST(ReplayTransport, End_IsFinal) {
   auto device = lidar::open(path.text());
   ASSERT_TRUE(device) << device.error().message();
   ASSERT_TRUE(device->start());
-  result<scan> found = device->next_scan(500ms);
+  result<scan> found = device->try_scan(500ms);
   int scans = 0;
   while (found || !found.error().is_fatal()) {
     if (found) ++scans;
-    found = device->next_scan(500ms);
+    found = device->try_scan(500ms);
   }
   EXPECT_EQ(found.error().code(), problem::end_of_input);
   EXPECT_GE(scans, 8);
@@ -120,7 +120,7 @@ TEST(ReplayTransport, ReportsLossesAndReconnects) {
     auto device = lidar::open(std::move(*from), options);
     ASSERT_TRUE(device) << device.error().message();
     ASSERT_TRUE(device->start());
-    while (bench.now_ns < 8 * second) static_cast<void>(device->next_scan(100ms));
+    while (bench.now_ns < 8 * second) static_cast<void>(device->try_scan(100ms));
   }
   ASSERT_TRUE(writer.close());
   const run_result run = replayed(std::move(*replay::open(path.text())));

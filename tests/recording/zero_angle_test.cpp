@@ -59,7 +59,7 @@ run_result live(const std::string& source, const std::string& path, const lidar_
     collector all(*opened);
     EXPECT_TRUE(opened->start());
     while (clock.now_ns() < 12 * second_ns) {
-      const auto scan = opened->next_scan(500ms);
+      const auto scan = opened->try_scan(500ms);
       EXPECT_TRUE(scan) << scan.error().message();
       if (!scan) break;
       all.points(run);

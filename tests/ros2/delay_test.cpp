@@ -81,7 +81,7 @@ TEST(Delay, DISABLED_OfASubscriberIsThatOfTheDriver) {
     ASSERT_TRUE(opened && opened->start());
     std::jthread reader([&](const std::stop_token& stop) {
       while (!stop.stop_requested()) {
-        if (opened->next_scan(100ms)) direct.add();
+        if (opened->try_scan(100ms)) direct.add();
       }
     });
     const auto zeros = zero_packets(lidar, length);
@@ -103,7 +103,7 @@ TEST(Delay, DISABLED_OfASubscriberIsThatOfTheDriver) {
   tool.wait();
   static_cast<void>(dds_set_listener(scans.handle(), nullptr));
   const auto subscriber = delays_ms(zeros, heard.all());
-  std::printf("zero packet to next_scan():  median %.2f ms, 90th percentile %.2f ms\n", driver[0],
+  std::printf("zero packet to try_scan():  median %.2f ms, 90th percentile %.2f ms\n", driver[0],
               driver[1]);
   std::printf("zero packet to a subscriber: median %.2f ms, 90th percentile %.2f ms\n",
               subscriber[0], subscriber[1]);

@@ -91,7 +91,7 @@ inline std::vector<g4lidar::owned_scan> scans_of(const std::string& path) {
   auto opened = g4lidar::lidar::open("file:" + path);
   EXPECT_TRUE(opened && opened->start());
   while (opened) {
-    const auto scan = opened->next_scan(std::chrono::milliseconds(500));
+    const auto scan = opened->try_scan(std::chrono::milliseconds(500));
     if (!scan) break;
     all.emplace_back(*scan);
   }

@@ -39,7 +39,7 @@ class ServiceMotion : public Service {
     auto device = lidar::open(*recorded(std::make_unique<virtual_connector>(bench), *writer));
     EXPECT_TRUE(device && device->start());
     for (std::int64_t next_ns = second; bench.now_ns < 9 * second;) {
-      static_cast<void>(device->next_scan(std::chrono::milliseconds(500)));
+      static_cast<void>(device->try_scan(std::chrono::milliseconds(500)));
       for (; has_odometry && next_ns < bench.now_ns; next_ns += second / 50)
         writer->odometry({next_ns, {x_at(next_ns), 0, 0}, {0.25, 0, 0}});
     }

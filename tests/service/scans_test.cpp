@@ -24,7 +24,7 @@ class ServiceScans : public Service {
     scan_shaper shaper(options);
     auto device = lidar::open({.device = file});
     EXPECT_TRUE(device && device->start());
-    while (const auto found = device->next_scan(1s)) {
+    while (const auto found = device->try_scan(1s)) {
       if (change_at > 0 && all.size() == change_at) shaper.set_options(others);
       shaper.shape(*found);
       service_scan made{.for_grid = shaper.for_grid(), .kept = shaper.kept()};

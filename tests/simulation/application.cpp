@@ -234,8 +234,8 @@ void application::judge(const error& what) {
 }
 
 void application::read_scan(milliseconds timeout) {
-  within(std::chrono::nanoseconds(timeout).count() + read_slack_ns, "next_scan()", [&] {
-    const auto found = lidar_->next_scan(timeout);
+  within(std::chrono::nanoseconds(timeout).count() + read_slack_ns, "try_scan()", [&] {
+    const auto found = lidar_->try_scan(timeout);
     if (!found) return judge(found.error());
     checker_.look();
     checker_.check_scan(*found);

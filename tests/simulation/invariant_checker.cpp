@@ -200,7 +200,7 @@ void invariant_checker::check_scan(const scan& found) {
   for (const point& p : found.points) {
     if (p.revolution != found.revolution) fail("a scan with points of another revolution");
   }
-  check_stretch(found.points, "next_scan()");
+  check_stretch(found.points, "try_scan()");
   if (!found.is_whole() || history_.empty()) return;
   if (!found.points.front().is_revolution_start()) fail("a whole scan begins somewhere");
   const auto earlier = [](const known_point& known, std::int64_t time_ns) {

@@ -87,11 +87,11 @@ class soaking {
       return true;
     }
     const std::int64_t plugged_ns = now();
-    while (here.next_scan(milliseconds(0))) {  // from before
+    while (here.try_scan(milliseconds(0))) {  // from before
     }
     const std::uint64_t before = here.counts().scans;
     while (here.counts().scans < before + 2) {
-      static_cast<void>(here.next_scan(milliseconds(500)));
+      static_cast<void>(here.try_scan(milliseconds(500)));
       if (now() - plugged_ns > 4 * second) return false;
     }
     report_.slowest_ns = std::max(report_.slowest_ns, now() - plugged_ns);
@@ -100,7 +100,7 @@ class soaking {
 
   void read_until(lidar& here, std::int64_t until_ns) {
     while (now() < until_ns) {
-      static_cast<void>(here.next_scan(milliseconds((until_ns - now()) / ms + 1)));
+      static_cast<void>(here.try_scan(milliseconds((until_ns - now()) / ms + 1)));
       while (here.next_event()) {
       }
     }

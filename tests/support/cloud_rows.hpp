@@ -41,7 +41,7 @@ void shape_drive(const shaped_drive& drive, bool pieces, deskewing how, Use use)
   ASSERT_TRUE(opened && opened->start());
   scan_shaper shaper(drive_shaping(how));
   const auto path = drive.poses();
-  while (const auto scan = opened->next_scan(std::chrono::milliseconds(500))) {
+  while (const auto scan = opened->try_scan(std::chrono::milliseconds(500))) {
     shaper.shape(*scan, path);
     use(shaper, *scan);
   }

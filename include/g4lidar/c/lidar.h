@@ -75,7 +75,7 @@ typedef struct g4lidar_options {
   int32_t stall_time_ms;      /**< A scan without a packet, 100 to 60000; 1000. */
   int32_t batch_ms;           /**< Bytes are read no more often than this, 0 to 100; 0. */
   bool reconnect;             /**< Whether to reconnect after a loss. */
-  bool partial_scans;         /**< Whether g4lidar_next_scan() also gives pieces. */
+  bool partial_scans;         /**< Whether g4lidar_try_scan() also gives pieces. */
   uint8_t reserved[6];        /**< 0. */
   /** How long to wait for a device that is not there yet; -1: without limit; 0. */
   int32_t device_wait_ms;
@@ -131,12 +131,12 @@ G4LIDAR_C_API int g4lidar_close(g4lidar_lidar* lidar, g4lidar_error* error);
 /** Closes the connection and leaves the device as it is: a running scan continues, unread. */
 G4LIDAR_C_API void g4lidar_release(g4lidar_lidar* lidar);
 
-/** The next revolution. Waits at most `timeout_ms`; below 0 counts as 0. G4LIDAR_TIMEOUT,
- *  G4LIDAR_RECONNECTING and G4LIDAR_CANCELLED are not fatal: call again. The texts of the error state
- *  whether the motor spins up, or a lost lidar is looked for. */
-G4LIDAR_C_API int g4lidar_next_scan(g4lidar_lidar* lidar, int timeout_ms, const g4lidar_scan** scan,
-                                    g4lidar_error* error);
-/** The same for a loop: it waits longer than `timeout_ms` while no scan is due. While the motor spins
+/** The next revolution, if it is complete within `timeout_ms`; below 0 counts as 0. G4LIDAR_TIMEOUT,
+ *  G4LIDAR_RECONNECTING and G4LIDAR_CANCELLED are not fatal: call again, or see g4lidar_wait_scan().
+ *  The texts of the error state whether the motor spins up, or a lost lidar is looked for. */
+G4LIDAR_C_API int g4lidar_try_scan(g4lidar_lidar* lidar, int timeout_ms, const g4lidar_scan** scan,
+                                   g4lidar_error* error);
+/** The next revolution, for a loop: it waits longer than `timeout_ms` while no scan is due. While the motor spins
  *  up after a start, a restart or a reconnect, it waits until the first scan, at most 10 s or
  *  `timeout_ms`, if that is longer. With reconnecting on it waits without limit while the lidar is
  *  lost. So a loop ends at the end of a file (G4LIDAR_END_OF_INPUT), at a fatal error, when it is
@@ -144,13 +144,13 @@ G4LIDAR_C_API int g4lidar_next_scan(g4lidar_lidar* lidar, int timeout_ms, const 
 G4LIDAR_C_API int g4lidar_wait_scan(g4lidar_lidar* lidar, int timeout_ms, const g4lidar_scan** scan,
                                     g4lidar_error* error);
 /** All points since the last call, at least one, and their number in `count`. The first call begins
- *  with the current revolution. Waits and fails like g4lidar_next_scan(). */
+ *  with the current revolution. Waits and fails like g4lidar_try_scan(). */
 G4LIDAR_C_API int g4lidar_next_points(g4lidar_lidar* lidar, int timeout_ms,
                                       const g4lidar_point** points, size_t* count,
                                       g4lidar_error* error);
 
 /** For an event loop: poll this descriptor for reading until g4lidar_deadline_ns(), then call
- *  g4lidar_next_scan() with a timeout of 0 until it returns G4LIDAR_TIMEOUT. It does not change at a
+ *  g4lidar_try_scan() with a timeout of 0 until it returns G4LIDAR_TIMEOUT. It does not change at a
  *  reconnect. -1 if there is none: in virtual time. */
 G4LIDAR_C_API int g4lidar_descriptor(const g4lidar_lidar* lidar);
 /** The latest time for the next call, by g4lidar_now_ns(); INT64_MAX if only bytes are awaited. */

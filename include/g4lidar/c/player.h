@@ -26,7 +26,7 @@ typedef struct g4lidar_playback {
 /** Of a lidar that plays a recording, or raw bytes in a file; NULL for another one. Valid until the next
  *  call of this function. The length of raw bytes is searched in the file, the first time. */
 G4LIDAR_C_API const g4lidar_playback* g4lidar_get_playback(g4lidar_lidar* lidar);
-/** While it is paused nothing is read: g4lidar_next_scan() waits until its timeout,
+/** While it is paused nothing is read: g4lidar_try_scan() waits until its timeout,
  *  g4lidar_wait_scan() without limit. This and the functions below fail with G4LIDAR_BAD_ARGUMENT for a
  *  lidar that plays no file. */
 G4LIDAR_C_API int g4lidar_pause(g4lidar_lidar* lidar, bool pauses, g4lidar_error* error);

@@ -133,7 +133,7 @@ result<void> live_driver::start() {
   question_.forget_woken();
   setup_.add_start(options_);
   const auto started = settle();
-  // If it is woken, the next calls continue it, also next_scan().
+  // If it is woken, the next calls continue it, also try_scan().
   if (!started && started.error() != problem::cancelled) wants_scan_ = false;
   return started;
 }

@@ -106,7 +106,7 @@ result<void> live_source::settle() {
   }
   if (stage_ == live_stage::closed) return tl::unexpected(reconnection_.why());
   while (stage_ != live_stage::lost && (stage_ >= live_stage::breaking || has_work())) {
-    // A scan may be complete before the start is done: next_scan() returns it.
+    // A scan may be complete before the start is done: try_scan() returns it.
     const bool keeps = stage_ == live_stage::preparing && stream_.talk().is_scanning();
     if (!keeps) pipeline_.drop_scan();
     if (auto done = step(never_ns); !done) return done;

@@ -154,7 +154,7 @@ void background_reader::thread::open() {
 void background_reader::thread::close() {
   if (!device_) return;
   static_cast<void>(device_->stop());
-  while (const auto scan = device_->next_scan(0ms)) listener_->on_scan(*scan);  // measured before
+  while (const auto scan = device_->try_scan(0ms)) listener_->on_scan(*scan);  // measured before
   give_events(true);
   publish();
   if (!is_given_) device_.reset();
@@ -215,7 +215,7 @@ std::optional<error> background_reader::thread::take(lidar::milliseconds longest
     if (!points && points.error() != problem::timeout) return points.error();
     longest = 0ms;
   }
-  const auto scan = device_->next_scan(longest);
+  const auto scan = device_->try_scan(longest);
   if (!scan) return scan.error();
   listener_->on_scan(*scan);
   if (std::exchange(playback_.shows_one, false)) follow_playback();

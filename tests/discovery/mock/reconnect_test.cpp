@@ -107,7 +107,7 @@ TEST_F(Reconnect, ScansOfAPortThatUdevFound_LoseNothing) {
     EXPECT_TRUE(started) << started.error().message();
     bool is_whole = started.has_value();
     for (int i = 0; is_whole && i < 15; ++i) {
-      const auto scan = device->next_scan(patience);
+      const auto scan = device->try_scan(patience);
       EXPECT_TRUE(scan) << scan.error().message();
       const bool spins_up = i < 3;
       is_whole = scan && (spins_up || std::abs(static_cast<int>(scan->size()) - 9000 / 5) <= 20);
@@ -138,7 +138,7 @@ TEST_F(Reconnect, OtherLidarOnTheOldPath_IsReportedOnceAndOursIsFound) {
   auto device = lidar::open(options);
   ASSERT_TRUE(device) << device.error().message();
   ASSERT_TRUE(device->start());
-  ASSERT_TRUE(device->next_scan(patience));
+  ASSERT_TRUE(device->try_scan(patience));
   ours.reset();
   bed.unplug(first);
   bed.plug(first);
@@ -147,7 +147,7 @@ TEST_F(Reconnect, OtherLidarOnTheOldPath_IsReportedOnceAndOursIsFound) {
   const auto reads_until = [&](kind wanted, std::chrono::nanoseconds longest = patience) {
     return comes_true(
         [&] {
-          static_cast<void>(device->next_scan(50ms));
+          static_cast<void>(device->try_scan(50ms));
           while (const auto event = device->next_event()) events.push_back(event->what);
           return std::ranges::count(events, wanted) > 0;
         },
@@ -174,15 +174,15 @@ TEST_F(Reconnect, NewPort_IsNoticedAtOnce) {
     lidar_options options;
     options.reconnect = true;
     auto device = lidar::open(options);
-    EXPECT_TRUE(device && device->start() && device->next_scan(patience));
+    EXPECT_TRUE(device && device->start() && device->try_scan(patience));
     ours.reset();
     remove(first);
     const auto back = std::chrono::steady_clock::now() + 3s;
-    while (std::chrono::steady_clock::now() < back) static_cast<void>(device->next_scan(10ms));
+    while (std::chrono::steady_clock::now() < back) static_cast<void>(device->try_scan(10ms));
     bed.plug(second);
     ours.emplace(serve(second, '1'));
     const auto begin = std::chrono::steady_clock::now();
-    while (!device->next_scan(100ms) && std::chrono::steady_clock::now() < begin + patience) {
+    while (!device->try_scan(100ms) && std::chrono::steady_clock::now() < begin + patience) {
     }
     const auto took = std::chrono::steady_clock::now() - begin;
     device->release();

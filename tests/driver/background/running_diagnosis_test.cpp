@@ -27,7 +27,7 @@ TEST(RunningDiagnosis, StagesInAnotherThread) {
     auto device =
         lidar::open(judge.observe(std::make_unique<sim::virtual_connector>(simulated, clock)));
     if (device && device->start()) {
-      while (clock.now_ns() < 30'000'000'000) static_cast<void>(device->next_scan(200ms));
+      while (clock.now_ns() < 30'000'000'000) static_cast<void>(device->try_scan(200ms));
     }
     is_over = true;
   });

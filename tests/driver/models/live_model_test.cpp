@@ -66,7 +66,7 @@ TEST_P(LiveModel, Unplugged_ContinuesWhenItIsBack) {
   ASSERT_TRUE(lidar->start());
   ASSERT_TRUE(lidar->wait_scan(2000ms));
   on.device.unplug(on.clock.now_ns());
-  EXPECT_EQ(lidar->next_scan(2000ms).error().code(), problem::reconnecting);
+  EXPECT_EQ(lidar->try_scan(2000ms).error().code(), problem::reconnecting);
   on.device.replug(on.clock.now_ns());
   const auto scan = lidar->wait_scan(5000ms);
   ASSERT_TRUE(scan) << scan.error().message();
@@ -215,7 +215,7 @@ TEST_P(LiveOneWay, FirstScan_AfterTwoRevolutionsAtMost) {
   auto lidar = on.open();
   ASSERT_TRUE(lidar) << lidar.error().message();
   ASSERT_TRUE(lidar->start());
-  ASSERT_TRUE(lidar->next_scan(2000ms));
+  ASSERT_TRUE(lidar->try_scan(2000ms));
   const std::int64_t turn_ns = 1'000'000'000'000 / on.device.motor_mhz(on.clock.now_ns());
   EXPECT_LE(on.clock.now_ns() - before_ns, 2 * turn_ns + 300 * ms);
 }
@@ -230,7 +230,7 @@ TEST_P(LiveOneWay, Stop_SaysThatTheMotorGoesOn) {
   const auto event = lidar->next_event();
   ASSERT_TRUE(event);
   EXPECT_EQ(event->what, lidar_event::kind::still_turning);
-  EXPECT_EQ(lidar->next_scan(0ms).error().code(), problem::not_scanning);
+  EXPECT_EQ(lidar->try_scan(0ms).error().code(), problem::not_scanning);
   ASSERT_TRUE(lidar->start());
   const auto scan = lidar->wait_scan(2000ms);
   ASSERT_TRUE(scan) << scan.error().message();

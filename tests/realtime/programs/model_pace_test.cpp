@@ -38,14 +38,14 @@ TEST(FastestModel, IsReadAtScanPaceWithoutAHeapCall) {
     EXPECT_TRUE(device) << device.error().message();
     EXPECT_TRUE(device && device->start());
     if (!device) return true;
-    for (int i = 0; i < 3; ++i) EXPECT_TRUE(device->next_scan(test::patience)) << i;
+    for (int i = 0; i < 3; ++i) EXPECT_TRUE(device->try_scan(test::patience)) << i;
     constexpr int scans = 10;
     std::size_t points = 0;
     std::size_t whole = 0;
     long waited = waits();
     const std::size_t heap_calls = test::allocations_in([&] {
       for (int i = 0; i < scans; ++i) {
-        const auto scan = device->next_scan(test::patience);
+        const auto scan = device->try_scan(test::patience);
         if (!scan) break;
         points += scan->points.size();
         whole += scan->is_whole() ? 1U : 0U;

@@ -39,8 +39,8 @@ clock::duration time_to_know_the_end(lidar& device, const test::child_process& p
     killed = clock::now();
     program.send(SIGKILL);
   });
-  auto scan = device.next_scan(test::patience);
-  while (scan) scan = device.next_scan(test::patience);
+  auto scan = device.try_scan(test::patience);
+  while (scan) scan = device.try_scan(test::patience);
   const auto known = clock::now();
   hand.join();
   EXPECT_EQ(scan.error().code(), problem::gone) << scan.error().message();
@@ -52,7 +52,7 @@ TEST_F(SimulatorProgram, Killed_IsGone) {
   test::expect_percentile_below(100ms, 75, 8, [&] {
     begin();
     auto device = lidar::open(test::patient_options(path_));
-    EXPECT_TRUE(device && device->start() && device->next_scan(test::patience));
+    EXPECT_TRUE(device && device->start() && device->try_scan(test::patience));
     const auto time = device ? time_to_know_the_end(*device, *program_) : clock::duration(0);
     EXPECT_EQ(program_->wait(), 128 + SIGKILL);
     return time;
@@ -67,19 +67,19 @@ TEST_F(SimulatorProgram, KilledAndRestarted_IsTheSameDevice) {
   auto device = lidar::open(options);
   ASSERT_TRUE(device) << device.error().message();
   ASSERT_TRUE(device->start());
-  ASSERT_TRUE(device->next_scan(test::patience));
+  ASSERT_TRUE(device->try_scan(test::patience));
   program_->send(SIGKILL);
   EXPECT_EQ(program_->wait(), 128 + SIGKILL);
   begin();
   const auto end = clock::now() + test::patience;
   while (device->counts().reconnects == 0 && clock::now() < end) {
-    const auto scan = device->next_scan(100ms);
+    const auto scan = device->try_scan(100ms);
     if (!scan) {
       ASSERT_FALSE(scan.error().is_fatal()) << scan.error().message();
     }
   }
   EXPECT_EQ(device->counts().reconnects, 1U);
-  EXPECT_TRUE(device->next_scan(test::patience));
+  EXPECT_TRUE(device->try_scan(test::patience));
 }
 
 // Like a short suspension of a laptop, or a debugger: afterwards everything continues as before.
@@ -91,7 +91,7 @@ TEST_F(SimulatorProgram, PausedForASecond_Continues) {
   auto device = lidar::open(options);
   ASSERT_TRUE(device) << device.error().message();
   ASSERT_TRUE(device->start());
-  ASSERT_TRUE(device->next_scan(test::patience));
+  ASSERT_TRUE(device->try_scan(test::patience));
   program_->send(SIGSTOP);
   std::thread hand([&] {
     std::this_thread::sleep_for(1s);
@@ -100,7 +100,7 @@ TEST_F(SimulatorProgram, PausedForASecond_Continues) {
   int scans = 0;
   const auto end = clock::now() + test::patience;
   while (scans < 10 && clock::now() < end) {
-    const auto scan = device->next_scan(100ms);
+    const auto scan = device->try_scan(100ms);
     if (scan) {
       ++scans;
     } else {
@@ -118,14 +118,14 @@ TEST_F(SimulatorProgram, PausedBriefly_IsNoEvent) {
   test::expect_three_of_four([&] {
     begin();
     auto device = lidar::open(test::patient_options(path_));
-    EXPECT_TRUE(device && device->start() && device->next_scan(test::patience));
+    EXPECT_TRUE(device && device->start() && device->try_scan(test::patience));
     if (!device) return false;
     program_->send(SIGSTOP);
     std::thread hand([&] {
       std::this_thread::sleep_for(400ms);
       program_->send(SIGCONT);
     });
-    for (int i = 0; i < 7; ++i) EXPECT_TRUE(device->next_scan(test::patience));
+    for (int i = 0; i < 7; ++i) EXPECT_TRUE(device->try_scan(test::patience));
     hand.join();
     EXPECT_FALSE(device->next_event());
     test::expect_identity(device->counts());

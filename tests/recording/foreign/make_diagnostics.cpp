@@ -28,7 +28,7 @@ int run(const std::string& directory) {
   running_diagnosis judge;
   auto device = lidar::open(judge.observe(std::make_unique<test::virtual_connector>(bench)));
   if (!device || !device->start()) return 1;
-  while (bench.now_ns < 12'000'000'000) static_cast<void>(device->next_scan(500ms));
+  while (bench.now_ns < 12'000'000'000) static_cast<void>(device->try_scan(500ms));
   const auto statuses = statuses_of(judge.stages(), device->counts(), "2021101000070073");
   std::vector<std::uint8_t> message;
   put_diagnostic_array(statuses, 1'700'000'000'123'456'789, message);

@@ -53,7 +53,7 @@ int run(const std::string& path, bool packed) {
   writer->device(known);
   if (auto started = device->start(); !started) return fail(started.error());
   while (bench.now_ns < 6 * second) {
-    const auto found = device->next_scan(1000ms);
+    const auto found = device->try_scan(1000ms);
     if (!found) continue;
     writer->points(found->points);
     writer->scan(*found);

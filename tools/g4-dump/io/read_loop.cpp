@@ -72,7 +72,7 @@ class read_loop {
   bool read() {
     const auto longest = lidar_.event_loop().native_handle() < 0 ? 50ms : 0ms;
     const auto take_scan = [this](const g4lidar::scan& scan) { records_ += sink_.scan(scan); };
-    const auto took = sink_.scan ? lidar_.next_scan(longest).map(take_scan)
+    const auto took = sink_.scan ? lidar_.try_scan(longest).map(take_scan)
                                  : lidar_.next_points(longest).map(sink_.points);
     if (took) return true;
     ended_ = took.error() == g4lidar::problem::end_of_input;
@@ -134,7 +134,7 @@ class read_loop {
 /// What a signal, -d or --idle has left of the bytes of a file or a pipe.
 void take_rest(g4lidar::lidar& lidar, const read_sink& sink) {
   if (sink.scan) {
-    if (const auto last = lidar.next_scan(0ms)) sink.scan(*last);
+    if (const auto last = lidar.try_scan(0ms)) sink.scan(*last);
     return;
   }
   while (const auto more = lidar.next_points(0ms)) sink.points(*more);

@@ -65,7 +65,7 @@ exit_code health(const common_options& options) {
 void wait_for_revolution(g4lidar::lidar& lidar) {
   const auto end = clock::now() + longest_start;
   while (interrupt() == 0) {
-    const auto got = lidar.next_scan(100ms);
+    const auto got = lidar.try_scan(100ms);
     if (got) return;
     if (got.error().is_fatal() || clock::now() > end) throw failure(got.error());
   }
