@@ -51,8 +51,8 @@ struct scan {
   /// The number of zero packets before it; scans that were cut by the angle have the same number.
   std::uint32_t revolution = 0;
   scan_flags flags = scan_flags::none;
-  /// The rotation frequency that the device reported with this revolution, 0.1 Hz; 0 if it did not.
-  std::uint8_t reported_frequency_dhz = 0;
+  /// The rotation frequency that the device reported with this revolution, 0.01 Hz; 0 if it did not.
+  std::uint16_t reported_frequency_chz = 0;
   std::uint32_t suspect_packets = 0;  ///< Left out of `points`, and flagged as `data_lost`.
   std::uint32_t suspect_samples = 0;  ///< The samples of these packets.
   std::uint32_t sample_rate_hz =

@@ -139,7 +139,7 @@ void bind_measurement(nb::class_<kept_scan>& made) {
           "The turn from the first point to the first one of the next scan, in degrees: about 360.")
       .def_prop_ro(
           "reported_frequency_hz",
-          [](const kept_scan& s) { return s.about.reported_frequency_dhz * 0.1; },
+          [](const kept_scan& s) { return s.about.reported_frequency_chz / 100.0; },
           "The rotation frequency that the device reported with this revolution, in Hz; 0 if it "
           "did not.")
       .def_ro("measured_frequency_hz", &kept_scan::measured_frequency_hz,

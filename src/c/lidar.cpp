@@ -127,7 +127,7 @@ void fill(g4lidar_scan& out, const scan& scan) noexcept {
   out.sample_rate_hz = scan.sample_rate_hz;
   out.measured_sample_rate_hz = scan.measured_sample_rate_hz();
   out.frequency_hz = scan.measured_frequency_hz();
-  out.reported_frequency_hz = static_cast<float>(scan.reported_frequency_dhz) * 0.1F;
+  out.reported_frequency_hz = static_cast<float>(scan.reported_frequency_chz) / 100.0F;
   out.turned_deg = scan.turned_deg;
   out.is_whole = scan.is_whole();
   out.is_piece = scan.is_piece();

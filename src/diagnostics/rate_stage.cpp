@@ -51,8 +51,8 @@ void find_other_speed(stage_report& rate, double rate_hz, double samples_per_rev
   };
   const bool is_known_rate = rate_hz <= 0.0 || std::ranges::any_of(rates, is_near) ||
                              is_rate_of_owners(rate, rate_hz, wanted);
-  const double least_hz = wanted.frequency.min_dhz / 10.0;
-  const double most_hz = wanted.frequency.max_dhz / 10.0;  // 0: not known
+  const double least_hz = wanted.frequency.min_chz / 100.0;
+  const double most_hz = wanted.frequency.max_chz / 100.0;  // 0: not known
   const bool is_possible =
       most_hz <= 0.0 ||
       (samples_per_revolution >= (1.0 - revolution_tolerance) * rates.front() / most_hz &&
@@ -104,7 +104,7 @@ void report_rate(stage_log& log, const stream_statistics& measured, const device
   const bool is_certain =
       !is_host_busy(measured) && all_stalls < frequency_tolerance && !is_mostly_damaged(measured);
   stage_report rate{.stage = diagnostic_stage::rate};
-  const double reported_hz = true_frequency_dhz(wanted, measured.tally().reported_dhz()) / 10.0;
+  const double reported_hz = true_frequency_chz(wanted, measured.tally().reported_chz()) / 100.0;
   if (reported_hz > 0.0) rate.add("reported_hz", reported_hz);
   if (measured.tally().turns_per_sample() > 0.0) {
     rate.add("samples_per_revolution", 1.0 / measured.tally().turns_per_sample());

@@ -148,7 +148,7 @@ void stream_statistics::take_packet(packet_view packet, std::int64_t arrival_ns)
   ++sizes_[samples];
   const bool is_usual = usual_size_ == 1 || sizes_[samples] > sizes_[usual_size_];
   if (samples > 1 && is_usual) usual_size_ = samples;
-  const int reported = packet.reported_frequency_dhz();
+  const int reported = packet.reported_frequency_chz();
   if (packet.is_zero()) {
     zero_deg_ = packet.first_angle_64ths() / 64.0;
     if (reported > 0) {

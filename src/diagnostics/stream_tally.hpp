@@ -113,7 +113,7 @@ struct stream_tally {
   std::uint64_t lost = 0;
   std::uint64_t jerks = 0;  // packets in which the head moves back, or much less far than in others
   mean turned{};            // degrees
-  mean reported{};          // 0.1 Hz
+  mean reported{};          // 0.01 Hz
   std::uint64_t checks = 0;    // of the speed of the head
   std::uint64_t unsteady = 0;  // those that found that it changes
 
@@ -128,7 +128,7 @@ struct stream_tally {
   /// Revolutions per second, by the angles and the sample rate.
   [[nodiscard]] double frequency_hz() const { return turns_per_sample() * sample_rate_hz(); }
   /// The mean frequency in zero packets; 0 if none has one.
-  [[nodiscard]] double reported_dhz() const noexcept { return reported.get(); }
+  [[nodiscard]] double reported_chz() const noexcept { return reported.get(); }
 };
 
 }  // namespace g4lidar

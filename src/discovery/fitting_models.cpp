@@ -97,7 +97,7 @@ std::vector<const model*> models_at_rate(const lidar_signs& seen) {
 std::vector<const model*> models_of_size(const lidar_signs& seen) {
   lidar_signs known{.sample_bytes = seen.sample_bytes,
                     .sample_rate_hz = seen.sample_rate_hz,
-                    .frequency_dhz = seen.frequency_dhz,
+                    .frequency_chz = seen.frequency_chz,
                     .answers = seen.answers};
   auto all = models_at_rate(known);
   if (!all.empty()) return all;

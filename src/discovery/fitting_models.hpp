@@ -27,7 +27,7 @@ struct lidar_signs {
   std::uint8_t ct_id_low_bits =
       0;  ///< As its CT bytes state, in a revolution whose CRC fits; 0: not.
   std::uint32_t sample_rate_hz = 0;  ///< As measured; 0: not.
-  std::uint32_t frequency_dhz =
+  std::uint32_t frequency_chz =
       0;  ///< As zero packets report it, if the rate follows from it. See may_measure().
   presence answers = presence::unknown;  ///< Whether it answered a command.
 };
@@ -66,7 +66,7 @@ struct lidar_signs {
 
 /// Whether it has the sample rate that was seen. See may_measure(). *Pure.*
 [[nodiscard]] inline bool may_measure(const model& row, const lidar_signs& seen) noexcept {
-  return may_measure(row, seen.sample_rate_hz, seen.frequency_dhz);
+  return may_measure(row, seen.sample_rate_hz, seen.frequency_chz);
 }
 
 /// Whether a two-way model may send such packets: one fits, and with the sample rate, unless only one-way

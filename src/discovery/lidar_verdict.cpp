@@ -30,7 +30,7 @@ lidar_signs lidar_search::signs() const noexcept {
   all.is_baud_certain = !has_fixed_rate_ || (options_.baud != 0 && device_);
   all.sample_bytes = heard_.layout().sample_bytes();
   all.sample_rate_hz = heard_.layout().rate_hz();
-  all.frequency_dhz = heard_.layout().frequency_dhz();
+  all.frequency_chz = heard_.layout().frequency_chz();
   if (device_) all.id = device_->model;
   if (const auto stated = heard_.layout().information()) all.ct_id_low_bits = stated->id_low_bits;
   return all;
@@ -139,7 +139,7 @@ lidar_search::found lidar_search::judge_silent(lidar_signs known, std::int64_t u
     const auto has_rate = [this] { return heard_.layout().rate_hz() != 0; };
     if (auto done = listen(until_ns, has_rate); !done) return tl::unexpected(done.error());
     known.sample_rate_hz = heard_.layout().rate_hz();
-    known.frequency_dhz = heard_.layout().frequency_dhz();
+    known.frequency_chz = heard_.layout().frequency_chz();
   }
   lidar_signs any = known;
   any.answers = presence::yes;  // if it were heard
@@ -147,7 +147,7 @@ lidar_search::found lidar_search::judge_silent(lidar_signs known, std::int64_t u
   auto all = models_that_fit(any);
   const lidar_signs one_way{.sample_bytes = known.sample_bytes,
                             .sample_rate_hz = known.sample_rate_hz,
-                            .frequency_dhz = known.frequency_dhz,
+                            .frequency_chz = known.frequency_chz,
                             .answers = presence::no};
   const bool is_far = !all.empty() && !may_measure(*all.front(), known);
   auto others = models_that_fit(one_way);

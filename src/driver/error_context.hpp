@@ -65,10 +65,8 @@ class error_context {
   }
   /// "5 Hz to 12 Hz".
   error_context& add_frequencies(const model& model) noexcept {
-    const auto hz = [](std::uint16_t dhz) {
-      return scan_frequency{static_cast<std::uint16_t>(10 * dhz)};
-    };
-    return add(hz(model.frequency.min_dhz)).add(" to ").add(hz(model.frequency.max_dhz));
+    add(scan_frequency{model.frequency.min_chz}).add(" to ");
+    return add(scan_frequency{model.frequency.max_chz});
   }
   /// " of a G6".
   error_context& add_owner(const model& model) noexcept {

@@ -64,7 +64,7 @@ class kept_recognition {
     auto fitting = models_at_rate({.baud = baud,
                                    .sample_bytes = seen.bytes,
                                    .sample_rate_hz = seen.rate_hz,
-                                   .frequency_dhz = seen.frequency_dhz,
+                                   .frequency_chz = seen.frequency_chz,
                                    .answers = answers ? presence::yes : presence::no});
     if (fitting.empty()) return nullptr;
     candidates_ = std::move(fitting);

@@ -31,9 +31,9 @@ std::string sample_rates_of(const model& model) {
 }
 
 std::string frequencies_of(const model& model) {
-  const auto& [min_dhz, max_dhz, reply, ct, pin] = model.frequency;
-  if (max_dhz == 0) return "pin " + std::string(pin);
-  return text_of_number(min_dhz / 10.0) + " to " + text_of_number(max_dhz / 10.0);
+  const auto& [min_chz, max_chz, reply, ct, pin] = model.frequency;
+  if (max_chz == 0) return "pin " + std::string(pin);
+  return text_of_number(min_chz / 100.0) + " to " + text_of_number(max_chz / 100.0);
 }
 
 std::string samples_of(const model& model) {

@@ -55,9 +55,9 @@ error bad_setting(const setting_info& setting, const model& model, std::uint16_t
   if (setting.type == setting_type::whole) return bad(words.add_rates(model).add_owner(model));
   if (setting.type != setting_type::decimal)
     return bad(words.add(setting.values[0].word).add(" or ").add(setting.values[1].word));
-  const auto [least_dhz, most_dhz, reply, ct, pin] = model.frequency;
-  words.add(least_dhz * 10U).add(" to ").add(most_dhz * 10U).add(" (").add(least_dhz / 10U);
-  words.add(" to ").add(most_dhz / 10U).add(" Hz").add_owner(model).add(")");
+  const auto [least_chz, most_chz, reply, ct, pin] = model.frequency;
+  words.add(least_chz).add(" to ").add(most_chz).add(" (").add(least_chz / 100U);
+  words.add(" to ").add(most_chz / 100U).add(" Hz").add_owner(model).add(")");
   return bad(words, given, "");
 }
 

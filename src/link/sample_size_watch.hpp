@@ -14,8 +14,8 @@ namespace g4lidar {
 struct stream_samples {
   std::size_t bytes = 0;      ///< Of a sample; 0: the size is as expected, or not certain.
   std::uint32_t rate_hz = 0;  ///< As the stream states it; 0: not.
-  std::uint32_t frequency_dhz =
-      0;  ///< From which the rate follows. See layout_recogniser::frequency_dhz().
+  std::uint32_t frequency_chz =
+      0;  ///< From which the rate follows. See layout_recogniser::frequency_chz().
 };
 
 /// *Single thread, never allocates.* From the begin of a stream on, until its first packets are as expected. The number
@@ -46,11 +46,11 @@ class sample_size_watch {
     const std::size_t size = seen_.sample_bytes();
     const std::uint32_t packets = seen_.votes(size);
     const std::uint32_t hz = seen_.rate_hz();
-    const std::uint32_t dhz = seen_.frequency_dhz();
-    const bool is_steady = hz != 0 && packets > rate_.since + packets_of_turn(hz, dhz);
+    const std::uint32_t chz = seen_.frequency_chz();
+    const bool is_steady = hz != 0 && packets > rate_.since + packets_of_turn(hz, chz);
     const bool is_unstated = hz == 0 && seen_.has_stated_all();
     if (!is_steady && !is_unstated && packets < most_packets) return {};
-    return {size, hz, dhz};
+    return {size, hz, chz};
   }
 
  private:
@@ -59,9 +59,9 @@ class sample_size_watch {
 
   /// Of a revolution with such a stated rate and frequency, at least: with 40 samples each, as all models send.
   [[nodiscard]] static constexpr std::uint32_t packets_of_turn(std::uint32_t hz,
-                                                               std::uint32_t dhz) noexcept {
+                                                               std::uint32_t chz) noexcept {
     constexpr std::uint32_t least = 16;
-    return dhz == 0 ? least : std::max(least, hz * 10 / dhz / 40);
+    return chz == 0 ? least : std::max(least, hz * 100 / chz / 40);
   }
 
   /// Notes since when the rate has been the same, nearly: while the motor spins up, it changes with each revolution.

@@ -104,7 +104,8 @@ parameter_limits limits_of(const parameter& parameter, const model* model) {
     if (parameter.setting->change == request_kind::set_scan_frequency)
       made.constraints += "; its speed: " + speed_without_commands(*model);
   } else if (parameter.setting->type == setting_type::decimal) {
-    made.range = {model->frequency.min_dhz / 10.0, model->frequency.max_dhz / 10.0, made.range[2]};
+    made.range = {model->frequency.min_chz / 100.0, model->frequency.max_chz / 100.0,
+                  made.range[2]};
   } else if (parameter.setting->type == setting_type::whole) {
     made.constraints = list_of(std::span(model->rates.entries).first(rate_count(*model)),
                                [](const auto& rate) { return std::to_string(rate.hz); });

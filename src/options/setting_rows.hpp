@@ -30,9 +30,9 @@ static_assert(std::ranges::all_of(models, [](const model& each) {
 inline constexpr std::int32_t least_of_all_chz = 300;
 inline constexpr std::int32_t most_of_all_chz = 1600;
 static_assert(std::ranges::all_of(models, [](const model& each) {
-  const bool is_set = each.frequency.max_dhz != 0;
-  return !is_set || (10 * each.frequency.min_dhz >= least_of_all_chz &&
-                     10 * each.frequency.max_dhz <= most_of_all_chz);
+  const bool is_set = each.frequency.max_chz != 0;
+  return !is_set ||
+         (each.frequency.min_chz >= least_of_all_chz && each.frequency.max_chz <= most_of_all_chz);
 }));
 inline constexpr std::array<setting_value, 2> directions{
     {{"cw", 1, motor_direction::clockwise}, {"ccw", 2, motor_direction::counter_clockwise}}};

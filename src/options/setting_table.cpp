@@ -46,8 +46,8 @@ result<answer> value_in(const setting_info& setting, std::string_view text, cons
     return failure(task::configuring, problem::bad_option, std::string(setting.name) + ": " + why);
   };
   if (setting.type == setting_type::decimal) {
-    const double least = is_known ? model->frequency.min_dhz / 10.0 : setting.least / 100.0;
-    const double most = is_known ? model->frequency.max_dhz / 10.0 : setting.most / 100.0;
+    const double least = is_known ? model->frequency.min_chz / 100.0 : setting.least / 100.0;
+    const double most = is_known ? model->frequency.max_chz / 100.0 : setting.most / 100.0;
     const auto number = number_in(text, least, most);
     if (!number) return refused(not_in_range(text, least, most));
     const double steps = *number * 100.0 / setting.step;

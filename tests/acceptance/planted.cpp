@@ -196,24 +196,24 @@ const std::vector<planted> differences{
        of.options.scanner.format.other_rate_codes = {3, 1, 4};
      },
      stream, "sample_rate_hz is 19999"},
-    {"frequency.min_dhz", "t-mini",
+    {"frequency.min_chz", "t-mini",
      with([](auto& of) { of.scanner.format.min_frequency_chz = 500; }), step::frequency,
      "lowest_hz is 5"},
-    {"frequency.min_dhz", "g4", with([](auto& of) { of.scanner.format.min_frequency_chz = 480; }),
+    {"frequency.min_chz", "g4", with([](auto& of) { of.scanner.format.min_frequency_chz = 480; }),
      step::frequency, "lowest_hz is 4.8"},
-    {"frequency.max_dhz", "t-mini-pro", with([](auto& of) {
+    {"frequency.max_chz", "t-mini-pro", with([](auto& of) {
        of.scanner.scan_frequency_chz = 800;
        of.highest_frequency_chz = 900;
      }),
      step::frequency, "highest_hz is 9"},
-    {"frequency.max_dhz", "x4", having(0x0D), queries, "frequency_0d is answered, although"},
-    {"frequency.max_dhz", "g5", without({0x0D}), step::frequency,
+    {"frequency.max_chz", "x4", having(0x0D), queries, "frequency_0d is answered, although"},
+    {"frequency.max_chz", "g5", without({0x0D}), step::frequency,
      "is not answered, and was not changed"},
     {"frequency.reply_offset_chz", "tg30", with([](auto& of) { of.frequency_error_chz = 0; }),
      stream, "frequency_hz is"},
     {"frequency.reply_offset_chz", "g4", with([](auto& of) { of.frequency_error_chz = 40; }),
      stream, "frequency_hz is"},
-    {"frequency.ct_offset_dhz", "tg30", with([](auto& of) { of.scanner.format.ct_offset_dhz = 0; }),
+    {"frequency.ct_offset_chz", "tg30", with([](auto& of) { of.scanner.format.ct_offset_chz = 0; }),
      stream, "offset_hz is"},
     {"range.min_mm", "x2", sees_a_post_at(0.08, 60.0), stream, "shortest_mm is 80"},
     {"range.min_mm", "t-mini", sees_a_post_at(0.03, 20.0), stream, "shortest_mm is 30"},
@@ -259,8 +259,8 @@ const std::vector<planted> differences{
     {"old_firmware.layout", "tg15",
      old_but(2, [](auto& of) { of.scanner.format.code.units_per_mm = 1; }), near_target,
      "measured_mm is 400"},
-    {"old_firmware.ct_offset_dhz", "tg15",
-     old_but(2, [](auto& of) { of.scanner.format.ct_offset_dhz = 30; }), stream, "offset_hz is"},
+    {"old_firmware.ct_offset_chz", "tg15",
+     old_but(2, [](auto& of) { of.scanner.format.ct_offset_chz = 300; }), stream, "offset_hz is"},
     {"old_firmware.zero_angle_divisor", "r2",
      old_but(7,
              [](auto& of) {

@@ -53,7 +53,7 @@ std::vector<std::string> fields_of(const model& row) {
   [[maybe_unused]] const auto& [entries, nominal_hz, is_settable, further_codes_hz, least_seen_hz,
                                 most_seen_hz] = rates_of;
   [[maybe_unused]] const auto& [hz, shortest_mm] = entries.front();
-  [[maybe_unused]] const auto& [min_dhz, max_dhz, reply_offset_chz, ct_offset_dhz, pin] =
+  [[maybe_unused]] const auto& [min_chz, max_chz, reply_offset_chz, ct_offset_chz, pin] =
       frequency_of;
   [[maybe_unused]] const auto& [min_mm, max_mm] = range;
   [[maybe_unused]] const auto& [last_version, old_layout, old_ct_offset, old_divisor] = old;
@@ -77,10 +77,10 @@ std::vector<std::string> fields_of(const model& row) {
                            "rates.is_settable",
                            "rates.least_seen_hz",
                            "rates.most_seen_hz",
-                           "frequency.min_dhz",
-                           "frequency.max_dhz",
+                           "frequency.min_chz",
+                           "frequency.max_chz",
                            "frequency.reply_offset_chz",
-                           "frequency.ct_offset_dhz",
+                           "frequency.ct_offset_chz",
                            "frequency.pin",
                            "range.min_mm",
                            "range.max_mm",
@@ -92,7 +92,7 @@ std::vector<std::string> fields_of(const model& row) {
                            "other_layout",
                            "old_firmware.last_version",
                            "old_firmware.layout",
-                           "old_firmware.ct_offset_dhz",
+                           "old_firmware.ct_offset_chz",
                            "old_firmware.zero_angle_divisor",
                            "has_pitch",
                            "usual"})

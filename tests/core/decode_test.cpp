@@ -48,7 +48,7 @@ constexpr bool decodes_the_manuals_packet(const Form& form) {
   const point& last = got.points.back();
   return got.points.size() == 40 && got.points.data() == out.data() && got.revolution == 7 &&
          got.sample_count == 40 && got.first_angle_64ths == 14322 && got.span_64ths == 1260 &&
-         !got.starts_revolution && !got.suspect && got.reported_frequency_dhz == 0 &&
+         !got.starts_revolution && !got.suspect && got.reported_frequency_chz == 0 &&
          near(first.angle_deg, 217.019064, 3e-5) && near(last.angle_deg, 235.631325, 3e-5) &&
          near(first.angle_deg, 217.0178, 0.0014) && near(last.angle_deg, 235.6326, 0.0014) &&
          first.range_mm == 1000.0F && last.range_mm == 8000.0F && last.revolution == 7 &&
@@ -232,7 +232,7 @@ TEST(Decode, SuspectPacket_GivesNoPoints) {
     EXPECT_TRUE(got.points.empty());
     EXPECT_TRUE(got.suspect);
     EXPECT_EQ(got.starts_revolution, ct == 1U);
-    EXPECT_EQ(got.reported_frequency_dhz, ct == 1U ? 70 : 0);
+    EXPECT_EQ(got.reported_frequency_chz, ct == 1U ? 700 : 0);
     EXPECT_EQ(got.revolution, 5U);
     EXPECT_EQ(got.sample_count, 40);
     EXPECT_TRUE(
@@ -303,11 +303,11 @@ TEST(Decode, FirstSampleOfAZeroPacketStartsTheRevolution) {
 TEST(Decode, FrequencyIsReportedByZeroPacketsOnly) {
   storage out;
   const made::packet zero = made::zero(0, 4000, 103);
-  EXPECT_EQ(decode(zero.view(), table(), 0, out).reported_frequency_dhz, 103);
+  EXPECT_EQ(decode(zero.view(), table(), 0, out).reported_frequency_chz, 1030);
   const made::packet silent = made::zero(0, 4000, 0);
-  EXPECT_EQ(decode(silent.view(), table(), 0, out).reported_frequency_dhz, 0);
+  EXPECT_EQ(decode(silent.view(), table(), 0, out).reported_frequency_chz, 0);
   const made::packet debug(0x86, 0, 64, 2);
-  EXPECT_EQ(decode(debug.view(), table(), 0, out).reported_frequency_dhz, 0);
+  EXPECT_EQ(decode(debug.view(), table(), 0, out).reported_frequency_chz, 0);
 }
 
 TEST(RevolutionCounter, StartsAtZeroAndCountsLaterZeroPackets) {

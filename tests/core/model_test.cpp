@@ -19,22 +19,22 @@ namespace {
 
 // One model a line: word; ids; bauds; layout, with the other one behind a slash; correction; way;
 // motor; rates in kHz, with their shortest range in cm behind a colon where the rate decides it;
-// nominal rate in kHz or ?; whether D0 sets it; limits of the frequency in 0.1 Hz; offset of replies
-// in 0.01 Hz and of CT in 0.1 Hz; divisor of the zero angle; largest LSN; D9; information in CT;
+// nominal rate in kHz or ?; whether D0 sets it; limits of the frequency, offset of replies
+// and of CT, in 0.01 Hz; divisor of the zero angle; largest LSN; D9; information in CT;
 // turn; ranges in mm; bits of intensity.
 constexpr const char* expected = R"(
-g4;5;230400;r/4;T;two;cmd;4:10 8:26 9:28;9;D0;50-120;0/0;-;80;yes;??;180;100-16000;0
-g4-pro;7;230400;r/4;T;two;cmd;4:10 8:26 9:28;9;D0;50-120;0/0;-;80;yes;??;180;100-16000;0
-g5;20;230400;r/4;T;two;cmd;4:10 8:26 9:28;9;D0;50-120;0/0;-;80;??;??;180;100-16000;0
-f4;1;115200;r/4;T;two;cmd;4;4;-;50-120;0/0;-;40;no;??;180;120-12000;0
-f4-pro;8 4;230400;r/4;T;two;cmd;4 6;4;D0;50-120;0/0;-;40;yes;??;180;120-12000;0
-g1;19;230400;r/4;T;two;cmd;9:28;9;-;50-120;0/0;4;40;??;??;180;100-16000;0
-g2a;14;230400;r/4;T;two;cmd;5;5;-;50-120;0/0;4;40;??;??;180;100-12000;0
-g2c;16;115200;r/4;T;two;cmd;4;4;-;50-120;0/0;4;40;??;??;180;100-12000;0
-g4c;18;115200;r/4;T;two;cmd;4;4;-;50-120;0/0;-;40;??;??;180;100-12000;0
-r2;9;230400;r/4;T;two;cmd;5;5;-;50-120;0/0;100;40;??;??;180;120-16000;0
-g6;13;512000;r/2;T;two;cmd;8:10 16:26 18:28;18;D0;50-120;0/0;-;40;yes;??;180;100-25000;0
-g7;21;512000;r/2;T;two;cmd;8:10 16:26 18:28;18;D0;50-120;0/0;-;40;yes;??;180;100-25000;0
+g4;5;230400;r/4;T;two;cmd;4:10 8:26 9:28;9;D0;500-1200;0/0;-;80;yes;??;180;100-16000;0
+g4-pro;7;230400;r/4;T;two;cmd;4:10 8:26 9:28;9;D0;500-1200;0/0;-;80;yes;??;180;100-16000;0
+g5;20;230400;r/4;T;two;cmd;4:10 8:26 9:28;9;D0;500-1200;0/0;-;80;??;??;180;100-16000;0
+f4;1;115200;r/4;T;two;cmd;4;4;-;500-1200;0/0;-;40;no;??;180;120-12000;0
+f4-pro;8 4;230400;r/4;T;two;cmd;4 6;4;D0;500-1200;0/0;-;40;yes;??;180;120-12000;0
+g1;19;230400;r/4;T;two;cmd;9:28;9;-;500-1200;0/0;4;40;??;??;180;100-16000;0
+g2a;14;230400;r/4;T;two;cmd;5;5;-;500-1200;0/0;4;40;??;??;180;100-12000;0
+g2c;16;115200;r/4;T;two;cmd;4;4;-;500-1200;0/0;4;40;??;??;180;100-12000;0
+g4c;18;115200;r/4;T;two;cmd;4;4;-;500-1200;0/0;-;40;??;??;180;100-12000;0
+r2;9;230400;r/4;T;two;cmd;5;5;-;500-1200;0/0;100;40;??;??;180;120-16000;0
+g6;13;512000;r/2;T;two;cmd;8:10 16:26 18:28;18;D0;500-1200;0/0;-;40;yes;??;180;100-25000;0
+g7;21;512000;r/2;T;two;cmd;8:10 16:26 18:28;18;D0;500-1200;0/0;-;40;yes;??;180;100-25000;0
 x4;6;128000;r>>2;T;two;dtr;5;5;-;-;0/0;-;40;no;no;0;120-10000;0
 x4-pro;4 6;128000;r>>2;T;one;supply;5;5;-;-;0/0;-;40;no;yes;0;120-10000;0
 x2;4 6;115200;r>>2;T;one;dtr;3;3;-;-;0/0;-;40;no;??;0;100-8000;0
@@ -47,16 +47,16 @@ s2-intensity;4 12;115200 128000;i8/r>>2;T;one;dtr;3;3;-;-;0/0;-;40;no;yes;0;80-1
 s2-pro-intensity;4 12;115200 128000;i8/r>>2;T;one;dtr;3;3;-;-;0/0;-;40;no;yes;0;80-12000;8
 s4;4;115200;r>>2;T;two;dtr;4;4;-;-;0/0;-;40;no;??;0;100-8000;0
 s4b;4 11;153600;i8;T;two;dtr;4;4;-;-;0/0;-;40;no;??;0;100-8000;8
-g2;15;230400;i10;T;two;cmd;5:28;5;-;50-120;0/0;4;40;??;??;180;100-16000;10
-g4b;17;512000;i10;T;two;cmd;10;10;-;50-120;0/0;-;40;??;??;180;120-16000;10
+g2;15;230400;i10;T;two;cmd;5:28;5;-;500-1200;0/0;4;40;??;??;180;100-16000;10
+g4b;17;512000;i10;T;two;cmd;10;10;-;500-1200;0/0;-;40;??;??;180;120-16000;10
 scl;22;115200;i8;S;one;dtr;3;3;-;-;0/0;-;40;no;??;0;120-8000;8
-t-mini;140;230400;i8;-;two;cmd;4;4;-;60-120;0/0;-;40;??;??;0;50-12000;8
-t-mini-pro;150;230400;i8;-;two;cmd;4;4;-;60-120;0/0;-;40;??;??;0;20-12000;8
-t-mini-plus;151;230400;i8;-;two;cmd;4;4;-;60-120;0/0;-;40;??;??;0;50-12000;8
-t-mini-plus-sh;152;230400;i16;-;two;cmd;4;4;-;60-120;0/0;-;40;??;??;0;50-25000;16
-tg15;100;512000;mm;-;two;cmd;10 18 20;?;-;30-160;-40/30;4;40;yes;??;180;50-30000;0
-tg30;101;512000;mm;-;two;cmd;10 18 20;?;-;30-160;-40/30;4;40;yes;??;180;50-30000;0
-tg50;102;512000;mm;-;two;cmd;10 18 20;?;-;30-160;-40/30;4;40;yes;??;180;50-50000;0
+t-mini;140;230400;i8;-;two;cmd;4;4;-;600-1200;0/0;-;40;??;??;0;50-12000;8
+t-mini-pro;150;230400;i8;-;two;cmd;4;4;-;600-1200;0/0;-;40;??;??;0;20-12000;8
+t-mini-plus;151;230400;i8;-;two;cmd;4;4;-;600-1200;0/0;-;40;??;??;0;50-12000;8
+t-mini-plus-sh;152;230400;i16;-;two;cmd;4;4;-;600-1200;0/0;-;40;??;??;0;50-25000;16
+tg15;100;512000;mm;-;two;cmd;10 18 20;?;-;300-1600;-40/300;4;40;yes;??;180;50-30000;0
+tg30;101;512000;mm;-;two;cmd;10 18 20;?;-;300-1600;-40/300;4;40;yes;??;180;50-30000;0
+tg50;102;512000;mm;-;two;cmd;10 18 20;?;-;300-1600;-40/300;4;40;yes;??;180;50-50000;0
 tx8;100;115200;mm;-;one;dtr;4;4;-;-;0/0;-;40;no;??;0;50-8000;0
 tx20;100;115200;mm;-;one;dtr;4;4;-;-;0/0;-;40;no;??;0;50-20000;0
 )";
@@ -127,12 +127,12 @@ std::string text(const model& row) {
       << (row.link == link_kind::two_way ? "two" : "one") << ';' << text(row.motor) << ';'
       << rates_text(row.rates) << ';';
   const frequency_properties& frequency = row.frequency;
-  if (frequency.max_dhz == 0) {
+  if (frequency.max_chz == 0) {
     out << '-';
   } else {
-    out << frequency.min_dhz << '-' << frequency.max_dhz;
+    out << frequency.min_chz << '-' << frequency.max_chz;
   }
-  out << ';' << frequency.reply_offset_chz << '/' << int{frequency.ct_offset_dhz} << ';'
+  out << ';' << frequency.reply_offset_chz << '/' << frequency.ct_offset_chz << ';'
       << (row.zero_angle_divisor == 0 ? "-" : std::to_string(row.zero_angle_divisor)) << ';'
       << int{row.samples.max_samples} << ';' << text(row.protection) << ';'
       << text(row.ct_information) << ';' << row.turn_deg << ';' << row.range.min_mm << '-'
@@ -206,7 +206,7 @@ TEST(Model, OldFirmwareDiffersWhereItDoes) {
     } else if (word == "tg15" || word == "tg30" || word == "tg50") {
       EXPECT_EQ(old.last_version, 256 + 2) << word;
       EXPECT_EQ(old.layout, sample_layout::half_mm) << word;
-      EXPECT_EQ(old.ct_offset_dhz, 0) << word;
+      EXPECT_EQ(old.ct_offset_chz, 0) << word;
       EXPECT_EQ(old.zero_angle_divisor, 4) << word;
     } else {
       EXPECT_EQ(old.last_version, 0) << word;
@@ -224,7 +224,7 @@ TEST(Model, AnOldFirmwareHasARecordOfItsOwn) {
     const model& old = with_firmware(tg15, reporting(100, major, minor));
     EXPECT_EQ(old.word, "tg15");
     EXPECT_EQ(old.samples.layout, sample_layout::half_mm) << major << "." << minor;
-    EXPECT_EQ(true_frequency_dhz(old, 70), 70);
+    EXPECT_EQ(true_frequency_chz(old, 700), 700);
     EXPECT_EQ(old.frequency.reply_offset_chz, -40) << "as the new one";
     EXPECT_EQ(&with_firmware(old, reporting(100, 3, 2)), &old) << "only of the table";
   }

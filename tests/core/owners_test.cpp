@@ -11,7 +11,7 @@ namespace {
 
 TEST(Owners, SpeedWithoutCommands) {
   for (const model& row : models) {
-    EXPECT_EQ(row.frequency.pin.empty(), row.frequency.max_dhz != 0) << row.word;
+    EXPECT_EQ(row.frequency.pin.empty(), row.frequency.max_chz != 0) << row.word;
   }
   EXPECT_EQ(model_named("x4")->frequency.pin, "M_SCTR");
   EXPECT_EQ(model_named("x4-pro")->frequency.pin, "M_CTR");

@@ -44,7 +44,7 @@ static_assert(std::is_trivially_copyable_v<packet_view>);
 static_assert(check_packet(zero_packet) == valid(12));
 static_assert(packet_checksum(zero_packet) == 0x54AB);
 static_assert(packet_view::from(zero_packet)->is_zero());
-static_assert(packet_view::from(zero_packet)->reported_frequency_dhz() == 0);
+static_assert(packet_view::from(zero_packet)->reported_frequency_chz() == 0);
 static_assert(packet_view::from(zero_packet)->sample_count() == 1);
 static_assert(packet_view::from(zero_packet)->sample(0) == 0);
 static_assert(packet_view::from(zero_packet)->first_angle_64ths() == 0xAE53 / 2);
@@ -59,16 +59,16 @@ static_assert(packet_view::from(two_samples)->last_angle_64ths() / 64.0 == 243.4
 static_assert(packet_view::from(two_samples)->span_64ths() / 64.0 == 19.6875);
 static_assert(!packet_view::from(two_samples)->is_zero());
 
-/// Frequency = byte / 10 Hz: CT's upper seven bits.
+/// Frequency = byte / 10 Hz: CT's upper seven bits. In 0.01 Hz.
 constexpr int frequency_of_ct(std::uint8_t ct) {
   std::array<std::uint8_t, 12> packet = zero_packet;
   packet[2] = ct;
   packet[8] = static_cast<std::uint8_t>(packet[8] ^ 0x01 ^ ct);
-  return packet_view::from(packet)->reported_frequency_dhz();
+  return packet_view::from(packet)->reported_frequency_chz();
 }
 static_assert(frequency_of_ct(0x01) == 0);
-static_assert(frequency_of_ct(0x8D) == 70);
-static_assert(frequency_of_ct(0xFF) == 127);
+static_assert(frequency_of_ct(0x8D) == 700);
+static_assert(frequency_of_ct(0xFF) == 1270);
 static_assert(frequency_of_ct(0x8C) == 0, "not a zero packet: its upper bits mean nothing");
 
 TEST(Packet, TheVendorsZeroPacket) {
@@ -132,7 +132,7 @@ TEST(Packet, UpperBitsOfCt_AreIgnoredButChecksummed) {
   ASSERT_TRUE(packet);
   EXPECT_FALSE(packet->is_zero());
   EXPECT_EQ(packet->ct(), 0x86);
-  EXPECT_EQ(packet->reported_frequency_dhz(), 0);
+  EXPECT_EQ(packet->reported_frequency_chz(), 0);
 
   buffer masked = data;  // the checksum of a vendor document that masks CT to bit 0
   masked[8] ^= 0x86;
@@ -145,7 +145,8 @@ TEST(Packet, AnyCtIsPossible) {
     const auto packet = packet_view::from(data);
     ASSERT_TRUE(packet) << ct;
     EXPECT_EQ(packet->is_zero(), ct % 2 == 1) << ct;
-    EXPECT_EQ(packet->reported_frequency_dhz(), ct % 2 == 1 ? static_cast<int>(ct / 2) : 0) << ct;
+    EXPECT_EQ(packet->reported_frequency_chz(), ct % 2 == 1 ? static_cast<int>(ct / 2) * 10 : 0)
+        << ct;
   }
 }
 

@@ -105,9 +105,9 @@ TEST(Scan, ReportsTheFrequencyOfItsZeroPacket) {
   cutter.finish();
   std::vector<int> reported;
   for (const kept_scan& kept : cutter.scans()) {
-    reported.push_back(kept.view.reported_frequency_dhz);
+    reported.push_back(kept.view.reported_frequency_chz);
   }
-  EXPECT_EQ(reported, (std::vector<int>{71, 0, 0, 120}));
+  EXPECT_EQ(reported, (std::vector<int>{710, 0, 0, 1200}));
 }
 
 TEST(Scan, MeasuresTheFrequencyByTheTimesOfItsPoints) {

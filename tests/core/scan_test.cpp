@@ -162,13 +162,13 @@ TEST(Scan, SuspectZeroPacket_StartsARevolution) {
   EXPECT_EQ(marks_of(cutter), (all_marks{whole, data_lost}));
   EXPECT_EQ(cutter.scans()[1].view.revolution, 1U);
   EXPECT_EQ(cutter.scans()[1].view.suspect_samples, 4U);
-  EXPECT_EQ(cutter.scans()[1].view.reported_frequency_dhz, 65);
+  EXPECT_EQ(cutter.scans()[1].view.reported_frequency_chz, 650);
   EXPECT_EQ(cutter.scans()[1].points.size(), 700U);
 }
 
 // The zero packets of a TG contain 3 Hz less than the motor turns; 0 means that they report nothing.
 TEST(Scan, ReportedFrequency_IsThatOfTheModel) {
-  const auto reported = [](const char* model, unsigned ct_dhz) {
+  const auto reported = [](const char* model, unsigned ct_chz) {
     std::vector<point> storage(100);
     scan_assembler assembler(storage, *model_named(model));
     for (int i = 0; i < 2; ++i) {
@@ -176,15 +176,16 @@ TEST(Scan, ReportedFrequency_IsThatOfTheModel) {
       decoded packet;
       packet.points = {&one, 1};
       packet.sample_count = 1;
-      packet.reported_frequency_dhz = static_cast<std::uint8_t>(ct_dhz);
+      packet.reported_frequency_chz = static_cast<std::uint16_t>(ct_chz);
       packet.starts_revolution = true;
-      while (const auto found = assembler.next(packet)) return int{found->reported_frequency_dhz};
+      while (const auto found = assembler.next(packet)) return int{found->reported_frequency_chz};
     }
     return -1;
   };
-  EXPECT_EQ(reported("tg30", 40), 70);
+  EXPECT_EQ(reported("tg30", 400), 700);
   EXPECT_EQ(reported("tg30", 0), 0);
-  EXPECT_EQ(reported("g4", 70), 70);
+  EXPECT_EQ(reported("g4", 700), 700);
+  EXPECT_EQ(reported("tg30", 1270), 1570);
 }
 
 TEST(Scan, OnlySuspectPackets_GiveAScanWithoutPoints) {

@@ -85,7 +85,7 @@ void test_revolutions() {
   check(device.got.scans == 3 && device.got.whole == 2);
   check(device.got.last.points.size() == samples_a_turn);
   check(device.got.last.revolution == 2);
-  check(device.got.last.reported_frequency_dhz == 71);
+  check(device.got.last.reported_frequency_chz == 710);
   check(near(device.got.last.turned_deg, 360.0, 0.01));
   check(near(device.got.last.measured_frequency_hz(), 9000.0 / samples_a_turn, 0.01));
   device.end();

@@ -28,7 +28,7 @@ void test_zero_packet() {
   const auto packet = packet_view::from(data);
   if (!check(packet.has_value())) return;
   check(packet->is_zero());
-  check(packet->reported_frequency_dhz() == 0);
+  check(packet->reported_frequency_chz() == 0);
   check(packet->sample_count() == 1);
   check(packet->first_angle_64ths() == 0xAE53 / 2);
   check(packet->sample(0) == 0);
@@ -50,7 +50,7 @@ void test_forty_samples() {
   const auto packet = packet_view::from(made.data());
   if (!check(packet.has_value())) return;
   check(!packet->is_zero());
-  check(packet->reported_frequency_dhz() == 0);
+  check(packet->reported_frequency_chz() == 0);
   check(packet->first_angle_64ths() * 100000LL == 22378125LL * 64);
   check(packet->last_angle_64ths() * 100000LL == 24346875LL * 64);
   check(packet->span_64ths() * 10000 == 196875 * 64);
@@ -96,7 +96,7 @@ void test_frequency() {
   const auto packet = packet_view::from(made.data());
   if (!check(packet.has_value())) return;
   check(packet->is_zero());
-  check(packet->reported_frequency_dhz() == 71);  // 7.1 Hz
+  check(packet->reported_frequency_chz() == 710);  // 7.1 Hz
 }
 
 template <std::size_t Size>

@@ -23,7 +23,7 @@ inline scan any_scan(test::dice& random, const std::vector<point>& points) {
   made.points = points;
   made.revolution = any<std::uint32_t>(random);
   made.flags = any<scan_flags>(random);
-  made.reported_frequency_dhz = any<std::uint8_t>(random);
+  made.reported_frequency_chz = any<std::uint16_t>(random);
   made.sample_rate_hz = any<std::uint32_t>(random);
   made.turned_deg = any<float>(random);
   made.duration_ns = any<std::int64_t>(random);

@@ -30,7 +30,7 @@ decoded any_packet(test::dice& random, std::vector<point>& memory) {
   made.sample_count = any<std::uint16_t>(random);
   made.first_angle_64ths = any<std::uint16_t>(random);
   made.span_64ths = any<std::int16_t>(random);
-  made.reported_frequency_dhz = any<std::uint8_t>(random);
+  made.reported_frequency_chz = any<std::uint16_t>(random);
   made.starts_revolution = random.below(4) == 0;
   made.suspect = random.below(8) == 0;
   memory = several<point>(random, 90);

@@ -118,7 +118,7 @@ model any_model(test::dice& random) {
   made.frequency = {any<std::uint16_t>(random),
                     any<std::uint16_t>(random),
                     any<std::int16_t>(random),
-                    any<std::int8_t>(random),
+                    any<std::int16_t>(random),
                     {}};
   made.range = {any<std::uint16_t>(random), any<std::uint16_t>(random)};
   made.turn_deg = any<std::uint16_t>(random);
@@ -137,8 +137,8 @@ TEST(ExtremeCore, Models) {
     use(expected_rate_of(which, number));
     use(is_seen_rate(which, any<double>(random)));
     use(other_product(byte));
-    use(true_frequency_dhz(which, any<std::int32_t>(random)));
-    use(true_frequency_dhz(which, any<double>(random)));
+    use(true_frequency_chz(which, any<std::int32_t>(random)));
+    use(true_frequency_chz(which, any<double>(random)));
     use(largest_scan(which));
     use(shortest_range_mm(which, number));
     use(one_way_other_than(which, byte));

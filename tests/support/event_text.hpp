@@ -53,7 +53,7 @@ constexpr void write_angle(line& out, int sixty_fourths) {
   line out;
   out << "packet size=" << packet.data().size();
   if (packet.is_zero()) {
-    out << " zero frequency_dhz=" << static_cast<std::size_t>(packet.reported_frequency_dhz());
+    out << " zero frequency_dhz=" << static_cast<std::size_t>(packet.reported_frequency_chz() / 10);
   }
   out << " samples=" << packet.sample_count() << " first_deg=";
   write_angle(out, packet.first_angle_64ths());

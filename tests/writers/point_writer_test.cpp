@@ -50,7 +50,7 @@ scan_record whole_scan() {
   scan_record record;
   record.scan.points = few;
   record.scan.revolution = 12;
-  record.scan.reported_frequency_dhz = 70;
+  record.scan.reported_frequency_chz = 700;
   record.scan.turned_deg = 359.987F;
   record.time_ns = 1'000'000'007;
   record.measured_hz = 7.0006;
@@ -137,7 +137,7 @@ TEST(Csv, OfRevolutions) {
             "12,1000000007,3,2,false,,359.99,7.0,7.001\n");
   scan_record piece = whole_scan();
   piece.scan.flags = scan_flags::start_missing | scan_flags::data_lost;
-  piece.scan.reported_frequency_dhz = 0;
+  piece.scan.reported_frequency_chz = 0;
   piece.scan.turned_deg = -3.25F;
   piece.measured_hz = 0.0;
   piece.scan.points = {};
@@ -195,7 +195,7 @@ TEST(Jsonl, OfRevolutions_IsValidJson) {
       "points":3,"returns":2,"suspect_samples":40,"turned_deg":359.99,"reported_hz":7.0,
       "measured_hz":7.001,"angle_deg":[90,180,270.5],"range_mm":[1234.5,0,75.25],
       "time_ns":[1000000007,0,-1500000000]})"));
-  record.scan.reported_frequency_dhz = 0;
+  record.scan.reported_frequency_chz = 0;
   record.measured_hz = 0.0;
   record.scan.points = {};
   const json empty = json::parse(scan_as({.format = text_format::jsonl, .scans = true}, record));
@@ -226,7 +226,7 @@ TEST(Text, OfRevolutions) {
             "    12       3        2      359.99          7.0         7.00  whole\n");
   scan_record piece = whole_scan();
   piece.scan.flags = scan_flags::start_missing | scan_flags::end_missing;
-  piece.scan.reported_frequency_dhz = 0;
+  piece.scan.reported_frequency_chz = 0;
   piece.measured_hz = 0.0;
   EXPECT_THAT(scan_as(style, piece),
               EndsWith("            -            -  partial: start_missing, end_missing\n"));

@@ -96,8 +96,8 @@ json measured(const std::vector<stage_report>& stages, diagnostic_stage where,
 json json_of(const setting_info& row, const g4lidar::model& of) {
   json made{{"name", row.name}, {"text", row.text}, {"unit", row.unit}};
   if (row.change == request_kind::set_scan_frequency) {
-    made["least"] = of.frequency.min_dhz / 10.0;
-    made["most"] = of.frequency.max_dhz / 10.0;
+    made["least"] = of.frequency.min_chz / 100.0;
+    made["most"] = of.frequency.max_chz / 100.0;
     made["step"] = row.step / 100.0;
   } else if (row.change == request_kind::set_sample_rate) {
     for (const auto& rate : of.rates.entries) {

@@ -35,14 +35,14 @@ class revolution_counter {
 /// The points of one packet, and its properties. `points` is in the memory that was given to
 /// decode().
 struct decoded {
-  std::span<const point> points;            ///< Empty if the packet is suspect.
-  std::uint32_t revolution = 0;             ///< As given to decode().
-  std::uint16_t sample_count = 0;           ///< Of the packet, suspect or not.
-  std::uint16_t first_angle_64ths = 0;      ///< First-level angle of the first sample, 1/64 degree.
-  std::int16_t span_64ths = 0;              ///< Clockwise turn to the last sample, 1/64 degree.
-  std::uint8_t reported_frequency_dhz = 0;  ///< 0.1 Hz; 0 if none is reported.
-  bool starts_revolution = false;           ///< A zero packet, suspect or not.
-  bool suspect = false;                     ///< The angles of its samples are not known.
+  std::span<const point> points;        ///< Empty if the packet is suspect.
+  std::uint32_t revolution = 0;         ///< As given to decode().
+  std::uint16_t sample_count = 0;       ///< Of the packet, suspect or not.
+  std::uint16_t first_angle_64ths = 0;  ///< First-level angle of the first sample, 1/64 degree.
+  std::int16_t span_64ths = 0;          ///< Clockwise turn to the last sample, 1/64 degree.
+  std::uint16_t reported_frequency_chz = 0;  ///< 0.01 Hz; 0 if none is reported.
+  bool starts_revolution = false;            ///< A zero packet, suspect or not.
+  bool suspect = false;                      ///< The angles of its samples are not known.
 };
 
 /// How the word of a range is read. *Pure*, and without a branch.
@@ -138,7 +138,7 @@ struct first_level_angles {
   result.sample_count = static_cast<std::uint16_t>(packet.sample_count());
   result.first_angle_64ths = static_cast<std::uint16_t>(packet.first_angle_64ths());
   result.span_64ths = static_cast<std::int16_t>(packet.span_64ths());
-  result.reported_frequency_dhz = static_cast<std::uint8_t>(packet.reported_frequency_dhz());
+  result.reported_frequency_chz = static_cast<std::uint16_t>(packet.reported_frequency_chz());
   result.starts_revolution = packet.is_zero();
   result.suspect = packet.is_suspect();
   return result;

@@ -50,10 +50,10 @@ class layout_candidate {
   }
   /// Samples per second, by the frequency that a zero packet reports and the angle between samples; 0: not known.
   [[nodiscard]] constexpr std::uint32_t rate_hz() const noexcept {
-    return span_64ths_ == 0 ? 0 : steps_ * turn_64ths * dhz_ / (10 * span_64ths_);
+    return span_64ths_ == 0 ? 0 : steps_ * turn_64ths * chz_ / (100 * span_64ths_);
   }
-  /// The last frequency that a zero packet reported, in 0.1 Hz; 0: none has.
-  [[nodiscard]] constexpr std::uint32_t frequency_dhz() const noexcept { return dhz_; }
+  /// The last frequency that a zero packet reported, in 0.01 Hz; 0: none has.
+  [[nodiscard]] constexpr std::uint32_t frequency_chz() const noexcept { return chz_; }
   /// Whether nothing is missing that other packets might state: a revolution was received without a gap; or the rate is
   /// known, and the CT bytes are all the same, so that they state nothing.
   [[nodiscard]] constexpr bool has_stated_all() const noexcept {
@@ -96,7 +96,7 @@ class layout_candidate {
     constexpr std::size_t exact = 8;  // samples, whose angles are rounded
     if (packet.is_zero()) {
       has_revolution_ = has_revolution_ || goes_on;
-      dhz_ = static_cast<std::uint32_t>(packet.reported_frequency_dhz());
+      chz_ = static_cast<std::uint32_t>(packet.reported_frequency_chz());
     } else {
       ct_or_ |= packet.ct();
       ct_and_ &= packet.ct();
@@ -124,7 +124,7 @@ class layout_candidate {
   bool has_revolution_ = false;    // one was received until the next zero packet
   std::uint8_t ct_or_ = 0;         // of all CT bytes but those of zero packets
   std::uint8_t ct_and_ = 255;
-  std::uint32_t dhz_ = 0;          // the last frequency
+  std::uint32_t chz_ = 0;          // the last frequency
   std::uint32_t steps_ = 0;        // from the first sample of a packet to its last one,
   std::uint32_t span_64ths_ = 0;   // and their angle
   std::uint32_t ranges_ = 0;       // samples that are not flags alone, and not 0
@@ -198,10 +198,10 @@ class layout_recogniser {
     const detail::layout_candidate* const sent = decided();
     return sent == nullptr ? 0 : sent->rate_hz();
   }
-  /// The frequency in 0.1 Hz from which rate_hz() follows, as it was reported. See true_frequency_dhz().
-  [[nodiscard]] constexpr std::uint32_t frequency_dhz() const noexcept {
+  /// The frequency in 0.01 Hz from which rate_hz() follows, as it was reported. See true_frequency_chz().
+  [[nodiscard]] constexpr std::uint32_t frequency_chz() const noexcept {
     const detail::layout_candidate* const sent = decided();
-    return sent == nullptr ? 0 : sent->frequency_dhz();
+    return sent == nullptr ? 0 : sent->frequency_chz();
   }
   /// Whether more packets will hardly show more about the model than those that have come. False as long as the size of a
   /// sample is not decided.
@@ -250,7 +250,7 @@ class layout_recogniser {
     }
     const auto sends = [&](const model& row) { return may_send(row, size, has_flags); };
     const auto measures = [&](const model& row) {
-      return sends(row) && may_measure(row, sent->rate_hz(), sent->frequency_dhz());
+      return sends(row) && may_measure(row, sent->rate_hz(), sent->frequency_chz());
     };
     // Its number is that of a model with samples of another size: so it may be any model with these, not the usual one.
     const model* const near =

@@ -25,7 +25,7 @@ inline constexpr model g4_model{
     .link = link_kind::two_way,
     .motor = motor_kind::command,
     .rates = {{{{4000, 100}, {8000, 260}, {9000, 280}}}, 9000, true},
-    .frequency = {50, 120},
+    .frequency = {500, 1200},
     .range = {100, 16000},
     .turn_deg = 180,
     .zero_angle_divisor = 0,
@@ -66,7 +66,7 @@ inline constexpr auto models = [] {
   // clang-format off
   constexpr model g_series{
       .word = {}, .name = {}, .bauds = {230400}, .link = two_way, .motor = command, .rates = fixed(5000),
-      .frequency = {50, 120}, .range = {100, 16000}, .turn_deg = 180};
+      .frequency = {500, 1200}, .range = {100, 16000}, .turn_deg = 180};
   constexpr model g1 = like(g_series, "g1", "G1", [&](model& m) {
     m.ids = {19}; m.samples.has_angle_replies = true; m.rates = fixed(9000, 280); m.zero_angle_divisor = 4; });
   constexpr model g6 = like(g_series, "g6", "G6", [&](model& m) {
@@ -92,12 +92,12 @@ inline constexpr auto models = [] {
   constexpr model t_mini{
       .word = "t-mini", .name = "T-mini", .ids = {140}, .bauds = {230400},
       .samples = {intensity_8, correction_kind::none}, .link = two_way, .motor = command, .rates = fixed(4000),
-      .frequency = {60, 120}, .range = {50, 12000}};
+      .frequency = {600, 1200}, .range = {50, 12000}};
   constexpr model tg15{
       .word = "tg15", .name = "TG15", .ids = {100}, .bauds = {512000},
       .samples = {whole_mm, correction_kind::none, 40, true, all_rate_codes - 1}, .link = two_way, .motor = command,
       .rates = {.entries = {{{10000}, {18000}, {20000}}}, .further_codes_hz = {20000, 10000}},
-      .frequency = {.min_dhz = 30, .max_dhz = 160, .reply_offset_chz = -40, .ct_offset_dhz = 30},
+      .frequency = {.min_chz = 300, .max_chz = 1600, .reply_offset_chz = -40, .ct_offset_chz = 300},
       .range = {50, 30000}, .turn_deg = 180, .zero_angle_divisor = 4, .protection = yes,
       .old_firmware = {.last_version = 0x0102, .layout = half_mm, .zero_angle_divisor = 4}};
   constexpr model tx8 = like(s4, "tx8", "TX8", [&](model& m) {
@@ -227,9 +227,9 @@ namespace detail {
 
 /// Whether the fields of `row` agree with each other and with the protocol. *Pure.*
 [[nodiscard]] constexpr bool is_consistent(const model& row) noexcept {
-  const auto& [min_dhz, max_dhz, reply_offset, ct_offset, pin] = row.frequency;
+  const auto& [min_chz, max_chz, reply_offset, ct_offset, pin] = row.frequency;
   const bool has_limits = 0 < row.range.min_mm && row.range.min_mm < row.range.max_mm &&
-                          (min_dhz < max_dhz || max_dhz == 0) && pin.empty() == (max_dhz != 0);
+                          (min_chz < max_chz || max_chz == 0) && pin.empty() == (max_chz != 0);
   const bool has_names = !row.word.empty() && !row.name.empty() && row.bauds[0] != 0 &&
                          row.ids[0] != 0 && row.ids[0] != row.ids[1];
   const bool has_memory = row.samples.max_samples > 0 && has_room_for(row, row.samples.layout) &&
@@ -239,7 +239,7 @@ namespace detail {
       old.last_version == 0 || (sample_size(old.layout) == sample_size(row.samples.layout) &&
                                 (old.zero_angle_divisor != 0) == (row.zero_angle_divisor != 0));
   const bool takes_commands = row.motor == motor_kind::command || row.rates.is_settable ||
-                              max_dhz != 0 || row.zero_angle_divisor != 0 || row.has_pitch ||
+                              max_chz != 0 || row.zero_angle_divisor != 0 || row.has_pitch ||
                               row.has_motor_settings || row.protection != presence::no;
   const bool has_angles = row.zero_angle_divisor != 0 || row.has_pitch;
   return has_names && has_limits && has_memory && is_parsed && has_consistent_rates(row) &&
@@ -271,7 +271,7 @@ inline constexpr auto old_models = [] {
   for (auto each = found.begin(); each != end; ++each) {
     const firmware_difference old = each->old_firmware;
     each->samples.layout = each->other_layout = old.layout;
-    each->frequency.ct_offset_dhz = old.ct_offset_dhz;
+    each->frequency.ct_offset_chz = old.ct_offset_chz;
     each->zero_angle_divisor = old.zero_angle_divisor;
     each->old_firmware = {};
   }

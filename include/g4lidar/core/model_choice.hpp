@@ -19,13 +19,13 @@ namespace g4lidar {
 }
 
 /// Whether a lidar of this model may have the sample rate `hz`: at most a tenth from one of its own. 0: not known, and true.
-/// `reported_dhz`: the frequency in the zero packets, in 0.1 Hz, if `hz` was computed from it: some models report it too
-/// low, and then `hz` is too low in the same ratio. 0: `hz` was measured otherwise. *Pure.*
+/// `reported_chz`: the frequency in the zero packets, in 0.01 Hz, if `hz` was computed from it: some models report it
+/// too low, and then `hz` is too low in the same ratio. 0: `hz` was measured otherwise. *Pure.*
 [[nodiscard]] constexpr bool may_measure(const model& row, std::uint32_t hz,
-                                         std::uint32_t reported_dhz = 0) noexcept {
-  const double is_times = reported_dhz == 0 ? 1.0
-                                            : true_frequency_dhz(row, double{1} * reported_dhz) /
-                                                  (double{1} * reported_dhz);
+                                         std::uint32_t reported_chz = 0) noexcept {
+  const double is_times = reported_chz == 0 ? 1.0
+                                            : true_frequency_chz(row, double{1} * reported_chz) /
+                                                  (double{1} * reported_chz);
   const double true_hz = is_times * hz;
   if (hz == 0 || is_seen_rate(row, true_hz)) return true;
   for (const sample_rate_entry& own : row.rates.entries) {

@@ -110,11 +110,11 @@ struct sample_rate_list {
 
 /// The scan frequency of a model.
 struct frequency_properties {
-  /// The limits of what commands can set, in 0.1 Hz; 0: not by command.
-  std::uint16_t min_dhz = 0;
-  std::uint16_t max_dhz = 0;          ///< See `min_dhz`.
+  /// The limits of what commands can set, in 0.01 Hz; 0: not by command.
+  std::uint16_t min_chz = 0;
+  std::uint16_t max_chz = 0;          ///< See `min_chz`.
   std::int16_t reply_offset_chz = 0;  ///< To be added to what replies contain, in 0.01 Hz.
-  std::int8_t ct_offset_dhz = 0;      ///< To be added to what zero packets contain, in 0.1 Hz.
+  std::int16_t ct_offset_chz = 0;     ///< To be added to what zero packets contain, in 0.01 Hz.
   /// Where no command sets it: the pin of the lidar at which a voltage or PWM does, "M_SCTR". Valid forever.
   std::string_view pin{};
 };
@@ -129,7 +129,7 @@ struct range_limits {
 struct firmware_difference {
   std::uint16_t last_version = 0;  ///< 256 * major + minor; 0 if there is no difference.
   sample_layout layout = sample_layout::quarter_mm;  ///< Of the same size.
-  std::int8_t ct_offset_dhz = 0;                     ///< As in frequency_properties.
+  std::int16_t ct_offset_chz = 0;                    ///< As in frequency_properties.
   std::uint8_t zero_angle_divisor = 0;
 };
 
@@ -253,23 +253,23 @@ struct expected_rate {
   return {2.0 / (longest_s + shortest_s), (longest_s - shortest_s) / (longest_s + shortest_s)};
 }
 
-/// The rotation frequency that a zero packet of a lidar like `model` means with `reported_dhz`, both in
-/// 0.1 Hz; 0, not reported, stays 0, and more than a packet can report, 127, counts as that. *Pure.*
+/// The rotation frequency that a zero packet of a lidar like `model` means with `reported_chz`, both in
+/// 0.01 Hz; 0, not reported, stays 0, and more than a packet can report, 12.7 Hz, counts as that. *Pure.*
 template <class Number>
-[[nodiscard]] constexpr Number true_frequency_dhz(const model& model,
-                                                  Number reported_dhz) noexcept {
-  constexpr Number most = 127;
-  if (!(reported_dhz > 0)) return Number{};
-  return (reported_dhz < most ? reported_dhz : most) + model.frequency.ct_offset_dhz;
+[[nodiscard]] constexpr Number true_frequency_chz(const model& model,
+                                                  Number reported_chz) noexcept {
+  constexpr Number most = 1270;
+  if (!(reported_chz > 0)) return Number{};
+  return (reported_chz < most ? reported_chz : most) + model.frequency.ct_offset_chz;
 }
 
 /// The most points of a revolution of `model`: four times those of its highest sample rate at its lowest
 /// frequency, because a motor that spins up is slower; at least 8192. *Pure.*
 [[nodiscard]] constexpr std::size_t largest_scan(const model& model) noexcept {
-  constexpr std::uint32_t lowest_dhz_without_command = 40;
-  const std::uint32_t set_dhz = model.frequency.min_dhz;
-  const std::uint32_t lowest_dhz = set_dhz != 0 ? set_dhz : lowest_dhz_without_command;
-  const std::size_t most = std::size_t{4} * 10 * highest_rate_hz(model) / lowest_dhz;
+  constexpr std::uint32_t lowest_chz_without_command = 400;
+  const std::uint32_t set_chz = model.frequency.min_chz;
+  const std::uint32_t lowest_chz = set_chz != 0 ? set_chz : lowest_chz_without_command;
+  const std::size_t most = std::size_t{4} * 100 * highest_rate_hz(model) / lowest_chz;
   return most < 8192 ? 8192 : most;
 }
 

@@ -128,9 +128,9 @@ class packet_view {
   [[nodiscard]] constexpr std::uint8_t ct() const noexcept { return data_[2]; }
   /// Whether a new revolution starts with the first sample of this packet. (protocol: CT)
   [[nodiscard]] constexpr bool is_zero() const noexcept { return (ct() & 1U) != 0; }
-  /// The scan frequency that a zero packet reports, in 0.1 Hz; 0 if none is reported.
-  [[nodiscard]] constexpr int reported_frequency_dhz() const noexcept {
-    return is_zero() ? ct() >> 1 : 0;
+  /// The scan frequency that a zero packet reports, in 0.01 Hz; 0 if none is reported. CT has it in 0.1 Hz.
+  [[nodiscard]] constexpr int reported_frequency_chz() const noexcept {
+    return is_zero() ? 10 * (ct() >> 1) : 0;
   }
 
   /// LSN, 1 to 80.

@@ -214,7 +214,7 @@ enum class notice : std::uint8_t {
     case request_kind::get_scan_frequency:
     case request_kind::step_scan_frequency:
     case request_kind::set_scan_frequency:
-      return model.frequency.max_dhz != 0;
+      return model.frequency.max_chz != 0;
     case request_kind::get_sample_rate:
       return model.rates.is_settable || model.rates.nominal_hz == 0;
     case request_kind::set_sample_rate:
@@ -236,8 +236,7 @@ enum class notice : std::uint8_t {
                                          const model& model = g4_model) noexcept {
   switch (wanted.what) {
     case request_kind::set_scan_frequency:
-      return wanted.value >= 10 * model.frequency.min_dhz &&
-             wanted.value <= 10 * model.frequency.max_dhz;
+      return wanted.value >= model.frequency.min_chz && wanted.value <= model.frequency.max_chz;
     case request_kind::step_scan_frequency:
       return wanted.value >= static_cast<std::uint16_t>(frequency_step::up_0_1_hz) &&
              wanted.value <= static_cast<std::uint16_t>(frequency_step::down_1_hz);
@@ -258,9 +257,9 @@ enum class notice : std::uint8_t {
 [[nodiscard]] constexpr bool may_be_frequency(const response_view& heard,
                                               const model& model) noexcept {
   const auto chz = heard.as_frequency_chz();
-  const auto& [min_dhz, max_dhz, offset_chz, ct_offset, pin] = model.frequency;
+  const auto& [min_chz, max_chz, offset_chz, ct_offset, pin] = model.frequency;
   const int beyond_chz = offset_chz < 0 ? -offset_chz : 0;
-  return chz && *chz >= 10 * min_dhz && *chz <= 10 * max_dhz + beyond_chz;
+  return chz && *chz >= min_chz && *chz <= max_chz + beyond_chz;
 }
 
 /// The answer of a lidar like `model` to command 93; nothing if it is no angle within a turn. *Pure.*

@@ -80,8 +80,8 @@ class scan_assembler {
       restart();
       flags_ = scan_flags::none;  // a loss before the first point belongs to no scan
       at_ = packet.first_angle_64ths;
-      scan_.reported_frequency_dhz = static_cast<std::uint8_t>(
-          true_frequency_dhz(*scan_.model, int{packet.reported_frequency_dhz}));
+      scan_.reported_frequency_chz = static_cast<std::uint16_t>(
+          true_frequency_chz(*scan_.model, int{packet.reported_frequency_chz}));
       packet.starts_revolution = false;
     }
     if (empty()) scan_.revolution = packet.revolution;

@@ -35,7 +35,7 @@ struct recognised_model {
   const model* which = &g4_model;  ///< Valid forever.
   recognised_by basis = recognised_by::nothing;
   std::uint32_t rate_hz = 0;        ///< Samples per second, as measured; 0: not known.
-  std::uint32_t frequency_dhz = 0;  ///< From which the rate follows. See may_measure().
+  std::uint32_t frequency_chz = 0;  ///< In 0.01 Hz, from which the rate follows. See may_measure().
 
   /// Whether other models send such bytes, too.
   [[nodiscard]] constexpr bool is_usual() const noexcept {
@@ -86,11 +86,11 @@ class stream_head {
   /// What sends them, as far as they show it: if it is complete and not decided, as if they ended here.
   [[nodiscard]] recognised_model found() const noexcept {
     if (seen_.sample_bytes() != 0 || begins_recording(held_)) {
-      return {&seen_.most_likely(), seen_.basis(), seen_.rate_hz(), seen_.frequency_dhz()};
+      return {&seen_.most_likely(), seen_.basis(), seen_.rate_hz(), seen_.frequency_chz()};
     }
     layout_recogniser ended = seen_;
     ended.finish();
-    return {&ended.most_likely(), ended.basis(), ended.rate_hz(), ended.frequency_dhz()};
+    return {&ended.most_likely(), ended.basis(), ended.rate_hz(), ended.frequency_chz()};
   }
 
  private:

@@ -67,9 +67,9 @@ struct wire_format {
   std::uint16_t min_frequency_chz = 500;    ///< Revolutions per 100 s, at least.
   std::uint16_t max_frequency_chz = 1200;   ///< The same, at most.
   std::uint8_t max_samples = most_samples;  ///< In a packet.
-  std::int8_t ct_offset_dhz = 0;  ///< What is missing in the reported frequency, in 0.1 Hz.
-  std::uint8_t usual_flags = 0;   ///< Of most returns, where samples have flags.
-  bool is_turned = true;          ///< Angle 0 is opposite to where the lidar looks.
+  std::int16_t ct_offset_chz = 0;  ///< What is missing in the reported frequency, in 0.01 Hz.
+  std::uint8_t usual_flags = 0;    ///< Of most returns, where samples have flags.
+  bool is_turned = true;           ///< Angle 0 is opposite to where the lidar looks.
 };
 
 /// The direction of rotation, and its effect on the angles.

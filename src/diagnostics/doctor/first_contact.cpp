@@ -149,7 +149,7 @@ bool first_contact::recognise(const exchange& first) {
                                        .sample_bytes = seen,
                                        .id = who->model,
                                        .sample_rate_hz = heard.rate_hz(),
-                                       .frequency_dhz = heard.frequency_dhz(),
+                                       .frequency_chz = heard.frequency_chz(),
                                        .answers = presence::yes},
                                       true);
   lidar.which = lidar.candidates.front();

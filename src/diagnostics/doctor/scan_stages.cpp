@@ -122,7 +122,7 @@ bool live_run::follow_samples() {
                                  .is_baud_certain = lidar_.has_baud,
                                  .sample_bytes = size,
                                  .sample_rate_hz = seen.rate_hz(),
-                                 .frequency_dhz = seen.frequency_dhz(),
+                                 .frequency_chz = seen.frequency_chz(),
                                  .answers = presence::yes});
   if (fitting.empty()) return false;
   const std::string samples = "samples have " + std::to_string(size) + " bytes, as those of " +

@@ -103,7 +103,7 @@ void running_scan::follow_samples(bytes data) {
           : models_that_fit(
                 {.sample_bytes = seen.bytes,
                  .sample_rate_hz = seen.rate_hz,
-                 .frequency_dhz = seen.frequency_dhz,
+                 .frequency_chz = seen.frequency_chz,
                  .answers = which_->link == link_kind::two_way ? presence::yes : presence::no});
   if (fitting.empty()) return;
   read_as(*fitting.front());

@@ -22,7 +22,7 @@ owned_fd open_bytes(const std::string& name) noexcept {
 
 recognised_model model_of(const stream_survey& seen) noexcept {
   return {&seen.layout().most_likely(), seen.layout().basis(), seen.layout().rate_hz(),
-          seen.layout().frequency_dhz()};
+          seen.layout().frequency_chz()};
 }
 
 stream_survey surveyed_at(const owned_fd& fd, off_t offset) {

@@ -160,7 +160,7 @@ recorded_device about(const recognised_model& found) {
   const std::size_t size = sample_size(which.samples.layout);
   std::vector<const model*> all;
   const auto measures = [&](const model& row) {
-    return may_measure(row, found.rate_hz, found.frequency_dhz);
+    return may_measure(row, found.rate_hz, found.frequency_chz);
   };
   for (const model& row : models) {
     const bool fits = may_send(row, size, found.basis == recognised_by::flags) &&

@@ -247,7 +247,7 @@ std::uint8_t scanner::next_ct(bool zero) noexcept {
   }
   if (!options_.reports_frequency) return 1;
   const auto frequency_dhz = static_cast<int>((speed_mhz_ + 50U) / 100U);
-  const int reported = std::clamp(frequency_dhz - options_.format.ct_offset_dhz, 0, 127);
+  const int reported = std::clamp(frequency_dhz - options_.format.ct_offset_chz / 10, 0, 127);
   return static_cast<std::uint8_t>(reported * 2 + 1);
 }
 

@@ -36,7 +36,7 @@ std::size_t first_rate(const simulated_model& simulated, const sample_code& code
 
 // 7 Hz, or 10 Hz if the model has no less than 6 Hz and can be set to it.
 std::uint16_t first_frequency_chz(const simulated_model& of) noexcept {
-  return of.frequency.is_stepped && of.frequency.slowest_dhz >= 60 ? 1000 : 700;
+  return of.frequency.is_stepped && of.frequency.slowest_chz >= 600 ? 1000 : 700;
 }
 
 command_set commands_of(const simulated_model& of) noexcept {
@@ -113,10 +113,10 @@ bool use_model(device_options& options, std::string_view word, bool other_layout
     format.rates_hz[i] = of.rates.rows[i].hz;
     format.other_rate_codes[i] = of.rates.other_codes[i];
   }
-  format.min_frequency_chz = static_cast<std::uint16_t>(of.frequency.slowest_dhz * 10);
-  format.max_frequency_chz = static_cast<std::uint16_t>(of.frequency.fastest_dhz * 10);
+  format.min_frequency_chz = of.frequency.slowest_chz;
+  format.max_frequency_chz = of.frequency.fastest_chz;
   format.max_samples = of.max_samples;
-  format.ct_offset_dhz = is_old ? of.old.ct_offset_dhz : of.frequency.ct_offset_dhz;
+  format.ct_offset_chz = is_old ? of.old.ct_offset_chz : of.frequency.ct_offset_chz;
   format.usual_flags = of.usual_flags;
   format.is_turned = of.is_turned;
 

@@ -44,14 +44,14 @@ struct rate_table {
   std::array<std::uint8_t, 3> other_codes{0, 1, 2};
 };
 
-/// The scan frequency, in 0.1 Hz.
+/// The scan frequency, in 0.01 Hz.
 struct frequency_row {
-  std::uint16_t slowest_dhz = 50;
-  std::uint16_t fastest_dhz = 120;
+  std::uint16_t slowest_chz = 500;
+  std::uint16_t fastest_chz = 1200;
   bool is_stepped = true;              ///< By 09 to 0C.
   bool is_reported = true;             ///< In zero packets.
-  std::int16_t answer_offset_chz = 0;  ///< To be added to answers, in 0.01 Hz.
-  std::int8_t ct_offset_dhz = 0;       ///< To be added to zero packets.
+  std::int16_t answer_offset_chz = 0;  ///< To be added to answers.
+  std::int16_t ct_offset_chz = 0;      ///< To be added to zero packets.
 };
 
 struct range_row {
@@ -82,7 +82,7 @@ struct old_version {
   std::uint16_t last = 0;  ///< 256 * major + minor; 0: no difference.
   sample_code code{};
   std::uint8_t zero_divisor = 0;
-  std::int8_t ct_offset_dhz = 0;
+  std::int16_t ct_offset_chz = 0;
 };
 
 /// By default what most models of the G series have.
@@ -221,14 +221,14 @@ inline constexpr auto x_models = [] {
   simulated_model one_way = s4;
   one_way.answers = talk::never;
   one_way.version = {1, 5, 1};
-  one_way.frequency.slowest_dhz = 40;
-  one_way.frequency.fastest_dhz = 80;
+  one_way.frequency.slowest_chz = 400;
+  one_way.frequency.fastest_chz = 800;
   const simulated_model x2 = with_rate(one_way, 3000);
 
   simulated_model x3_pro = one_way;
   x3_pro.rates = {{{{3000}, {4000}}}};
-  x3_pro.frequency.slowest_dhz = 60;
-  x3_pro.frequency.fastest_dhz = 120;
+  x3_pro.frequency.slowest_chz = 600;
+  x3_pro.frequency.fastest_chz = 1200;
 
   simulated_model informing = one_way;
   informing.information = knowledge::present;
@@ -236,8 +236,8 @@ inline constexpr auto x_models = [] {
   informing.version = {3, 1, 3};
   simulated_model x4_pro = with_baud(with_rate(with_range(informing, 120, 10'000), 5000), 128'000);
   x4_pro.driven_by = drive::power;
-  x4_pro.frequency.slowest_dhz = 50;
-  x4_pro.frequency.fastest_dhz = 120;
+  x4_pro.frequency.slowest_chz = 500;
+  x4_pro.frequency.fastest_chz = 1200;
   simulated_model s2 = with_range(informing, 80, 12'000);
   s2.bauds = {115'200, 128'000};
   s2.rates = {{{{3000}, {4000}, {5000}}}};
@@ -278,7 +278,7 @@ inline constexpr auto time_of_flight_models = [] {
   t_mini.code = bright_8_code;
   t_mini.usual_flags = 2;
   t_mini.version = {1, 3, 1};
-  t_mini.frequency.slowest_dhz = 60;
+  t_mini.frequency.slowest_chz = 600;
   t_mini.is_turned = false;
   simulated_model sh = with_range(t_mini, 50, 25'000);
   sh.code = bright_16_code;
@@ -289,22 +289,22 @@ inline constexpr auto time_of_flight_models = [] {
   tg.code = mm_code;
   tg.rates = {{{{10'000}, {18'000}, {20'000}}}};
   tg.rates.other_codes = {4, 1, 3};
-  tg.frequency.slowest_dhz = 30;
-  tg.frequency.fastest_dhz = 160;
+  tg.frequency.slowest_chz = 300;
+  tg.frequency.fastest_chz = 1600;
   tg.index_deg = 108;
   tg.commands.rate_query_only = true;
   tg.commands.protection = knowledge::present;
   tg.leading = leading_byte::crc;
   tg.frequency.answer_offset_chz = -40;
-  tg.frequency.ct_offset_dhz = 30;
+  tg.frequency.ct_offset_chz = 300;
   tg.old = {0x0102, half_code, 4, 0};
 
   simulated_model tx = with_baud(with_rate(straight, 4000), 115'200);
   tx.code = mm_code;
   tx.answers = talk::never;
   tx.driven_by = drive::dtr_line;
-  tx.frequency.slowest_dhz = 40;
-  tx.frequency.fastest_dhz = 80;
+  tx.frequency.slowest_chz = 400;
+  tx.frequency.fastest_chz = 800;
   tx.frequency.is_stepped = false;
   tx.is_turned = false;
   tx.commands.protection = knowledge::absent;

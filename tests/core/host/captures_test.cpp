@@ -301,7 +301,7 @@ TEST_F(CapturedFiles, X2PacketWithUpperBitsInCt_IsNoZeroPacket) {
   EXPECT_EQ(counts_of("x2_packet.bin", cutter).points, 40U);
   ASSERT_EQ(cutter.scans().size(), 1U);
   EXPECT_TRUE(cutter.scans()[0].view.has(scan_flags::start_missing));
-  EXPECT_EQ(cutter.scans()[0].view.reported_frequency_dhz, 0);
+  EXPECT_EQ(cutter.scans()[0].view.reported_frequency_chz, 0);
 }
 
 TEST_F(CapturedFiles, VendorsZeroPacket_IsOnePointWithoutReturn) {

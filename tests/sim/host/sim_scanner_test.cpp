@@ -125,7 +125,7 @@ TEST(SimScanner, ZeroPacket_ReportsTheFrequencyIfRequested) {
     for (const bool reports : {true, false}) {
       options.reports_frequency = reports;
       for (const kept_packet& p : run(options, 0.5)) {
-        ASSERT_EQ(p.view().reported_frequency_dhz(), reports && p.view().is_zero() ? dhz : 0);
+        ASSERT_EQ(p.view().reported_frequency_chz(), reports && p.view().is_zero() ? 10 * dhz : 0);
         ASSERT_TRUE(p.view().is_zero() || p.view().ct() == 0);
       }
     }

@@ -159,20 +159,20 @@ TEST(SimModels, ZeroPacketsReportTheFrequencyAsTheModelDoes) {
     sim::device_options options = test::options_of(word);
     options.scanner.scan_frequency_chz = chz;
     options.motor_drift_ppm = 0;
-    int last_dhz = -1;
+    int last_chz = -1;
     const byte_vector sent = test::stream_of(options, 3 * second).bytes;
     test::for_each_packet(sent, format_of(word), [&](packet_view packet, std::size_t) {
-      if (packet.is_zero()) last_dhz = packet.reported_frequency_dhz();
+      if (packet.is_zero()) last_chz = packet.reported_frequency_chz();
     });
-    return last_dhz;
+    return last_chz;
   };
-  EXPECT_EQ(reported("g4", 700), 70);
-  EXPECT_EQ(reported("g6", 1200), 120);
+  EXPECT_EQ(reported("g4", 700), 700);
+  EXPECT_EQ(reported("g6", 1200), 1200);
   EXPECT_EQ(reported("x4", 700), 0) << "old firmware reports none";
-  EXPECT_EQ(reported("x2", 650), 65);
-  EXPECT_EQ(reported("t-mini-pro", 1000), 100);
-  EXPECT_EQ(reported("tg15", 690), 39) << "3 Hz too low";
-  EXPECT_EQ(reported("tg50", 1600), 127) << "the most that fits";
+  EXPECT_EQ(reported("x2", 650), 650);
+  EXPECT_EQ(reported("t-mini-pro", 1000), 1000);
+  EXPECT_EQ(reported("tg15", 690), 390) << "3 Hz too low";
+  EXPECT_EQ(reported("tg50", 1600), 1270) << "the most that fits";
 }
 
 TEST(SimModels, FlagsAndIntensityAreThoseOfTheModel) {

@@ -105,13 +105,13 @@ TEST(SimModelTables, AgreeInEachField) {
     }
     same("nominal rate", ours.rates.nominal_hz, its.rates.usual_hz);
     same("is_settable", ours.rates.is_settable, its.rates.are_stepped);
-    same("whether the frequency can be set", ours.frequency.max_dhz != 0, its.frequency.is_stepped);
+    same("whether the frequency can be set", ours.frequency.max_chz != 0, its.frequency.is_stepped);
     if (its.frequency.is_stepped) {
-      same("min_dhz", ours.frequency.min_dhz, its.frequency.slowest_dhz);
-      same("max_dhz", ours.frequency.max_dhz, its.frequency.fastest_dhz);
+      same("min_chz", ours.frequency.min_chz, its.frequency.slowest_chz);
+      same("max_chz", ours.frequency.max_chz, its.frequency.fastest_chz);
     }
     same("reply_offset_chz", ours.frequency.reply_offset_chz, its.frequency.answer_offset_chz);
-    same("ct_offset_dhz", ours.frequency.ct_offset_dhz, its.frequency.ct_offset_dhz);
+    same("ct_offset_chz", ours.frequency.ct_offset_chz, its.frequency.ct_offset_chz);
     same("min_mm", ours.range.min_mm, its.range.nearest_mm);
     same("max_mm", ours.range.max_mm, its.range.farthest_mm);
     same("turn_deg", int{ours.turn_deg}, its.is_turned ? 180 : 0);
@@ -124,7 +124,7 @@ TEST(SimModelTables, AgreeInEachField) {
     same("last old firmware", ours.old_firmware.last_version, its.old.last);
     if (its.old.last == 0) continue;
     same("old layout", text_of(ours.old_firmware.layout), text_of(its.old.code));
-    same("old ct_offset_dhz", ours.old_firmware.ct_offset_dhz, its.old.ct_offset_dhz);
+    same("old ct_offset_chz", ours.old_firmware.ct_offset_chz, its.old.ct_offset_chz);
     same("old zero_angle_divisor", ours.old_firmware.zero_angle_divisor, its.old.zero_divisor);
   }
 }

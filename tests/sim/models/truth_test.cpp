@@ -221,11 +221,11 @@ TEST(SimModels, ATGWithOldFirmware) {
   std::vector<point> out(sent.truth.size() + max_samples);
   bytes input(sent.bytes);
   expect_points(old, sent, decoder.decode(input, out));
-  int reported_dhz = 0;
+  int reported_chz = 0;
   test::for_each_packet(sent.bytes, as.samples, [&](packet_view packet, std::size_t) {
-    if (packet.is_zero()) reported_dhz = packet.reported_frequency_dhz();
+    if (packet.is_zero()) reported_chz = packet.reported_frequency_chz();
   });
-  EXPECT_NEAR(reported_dhz, 70, 1);
+  EXPECT_NEAR(reported_chz, 700, 10);
 }
 
 }  // namespace

@@ -67,7 +67,7 @@ expected_rate rate_of_stream(const known_facts& facts) noexcept {
 
 expected turning(const known_facts& facts) noexcept {
   const double answered_hz = facts.number("answered_hz");
-  if (answered_hz <= 0.0 || facts.row.frequency.max_dhz == 0) return unknown;
+  if (answered_hz <= 0.0 || facts.row.frequency.max_chz == 0) return unknown;
   const double hz = answered_hz + facts.row.frequency.reply_offset_chz / 100.0;
   return around(hz, std::max(0.25, 0.03 * hz));
 }
@@ -140,10 +140,10 @@ constexpr std::array checks{
               [](const known_facts& facts) { return as(facts.row.protection); }},
     check_row{
         step::frequency, "lowest_hz",
-        [](const known_facts& facts) { return around(facts.row.frequency.min_dhz / 10.0, 0.06); }},
+        [](const known_facts& facts) { return around(facts.row.frequency.min_chz / 100.0, 0.06); }},
     check_row{
         step::frequency, "highest_hz",
-        [](const known_facts& facts) { return around(facts.row.frequency.max_dhz / 10.0, 0.06); }},
+        [](const known_facts& facts) { return around(facts.row.frequency.max_chz / 100.0, 0.06); }},
     check_row{step::sample_rate, "answers_d0", must},
     check_row{step::sample_rate, "codes",
               [](const known_facts& facts) { return around(rate_count(facts.row), 0.0); }},
@@ -176,7 +176,7 @@ constexpr std::array checks{
     check_row{step::stream, "frequency_hz", turning},
     check_row{step::stream, "offset_hz",
               [](const known_facts& facts) {
-                return around(facts.row.frequency.ct_offset_dhz / 10.0, 0.25);
+                return around(facts.row.frequency.ct_offset_chz / 100.0, 0.25);
               }},
     check_row{step::stream, "shortest_mm",
               [](const known_facts& facts) {

@@ -63,7 +63,7 @@ void kept_settings::remember(lidar_link& link, const model& model) {
   if (is_remembered_ || !link.is_two_way()) return;
   is_remembered_ = true;
   link.stop();
-  if (model.frequency.max_dhz != 0) at(setting::frequency).before = link.number(frequency_query);
+  if (model.frequency.max_chz != 0) at(setting::frequency).before = link.number(frequency_query);
   if (model.rates.is_settable) at(setting::sample_rate).before = link.number(sample_rate_query);
 }
 

@@ -20,7 +20,7 @@ constexpr std::array all_queries{
     query_row{0x91, "health_91", 3, [](const model&) { return presence::unknown; }},
     query_row{0x92, "health_92", 3, [](const model&) { return presence::unknown; }},
     query_row{0x0D, "frequency_0d", 4,
-              [](const model& row) { return when(row.frequency.max_dhz != 0); }},
+              [](const model& row) { return when(row.frequency.max_chz != 0); }},
     query_row{
         0xD1, "sample_rate_d1", 1,
         [](const model& row) { return row.rates.is_settable ? presence::yes : unknown_of_g(row); }},
@@ -36,7 +36,7 @@ bool always(const tested_lidar& /*lidar*/) noexcept { return true; }
 bool may_have_protection(const tested_lidar& lidar) noexcept {
   return lidar.is_two_way() && lidar.row.protection != presence::no;
 }
-bool sets_frequency(const tested_lidar& lidar) noexcept { return lidar.row.frequency.max_dhz != 0; }
+bool sets_frequency(const tested_lidar& lidar) noexcept { return lidar.row.frequency.max_chz != 0; }
 bool sets_rate(const tested_lidar& lidar) noexcept { return lidar.row.rates.is_settable; }
 bool takes_commands(const tested_lidar& lidar) noexcept { return lidar.is_two_way(); }
 bool has_scan(const tested_lidar& lidar) noexcept {

@@ -13,7 +13,7 @@ namespace {
 bool any(const model& /*which*/) noexcept { return true; }
 bool two_way(const model& model) noexcept { return model.link == link_kind::two_way; }
 bool one_way(const model& model) noexcept { return !two_way(model); }
-bool sets_frequency(const model& model) noexcept { return model.frequency.max_dhz != 0; }
+bool sets_frequency(const model& model) noexcept { return model.frequency.max_chz != 0; }
 bool sets_rate(const model& model) noexcept { return model.rates.is_settable; }
 bool has_dtr(const model& model) noexcept { return model.motor == motor_kind::dtr; }
 bool has_offset(const model& model) noexcept { return model.zero_angle_divisor != 0; }

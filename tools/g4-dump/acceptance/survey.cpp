@@ -90,7 +90,7 @@ void packet_survey::take(packet_view packet, std::int64_t arrival_ns) {
   static_cast<void>(reader_.add(packet));
   if (packet.is_zero()) {
     zeros_.push_back({arrival_ns, samples_});
-    reported_dhz_ += static_cast<std::uint64_t>(packet.reported_frequency_dhz());
+    reported_chz_ += static_cast<std::uint64_t>(packet.reported_frequency_chz());
     ++zero_packets;
   }
   const std::size_t count = packet.sample_count();
@@ -146,7 +146,7 @@ bool packet_survey::is_steady() const {
 
 double packet_survey::reported_hz() const noexcept {
   if (zero_packets == 0) return 0.0;
-  return static_cast<double>(reported_dhz_) / 10.0 / static_cast<double>(zero_packets);
+  return static_cast<double>(reported_chz_) / 100.0 / static_cast<double>(zero_packets);
 }
 
 }  // namespace g4_tool::acceptance

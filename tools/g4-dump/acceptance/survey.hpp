@@ -88,7 +88,7 @@ class packet_survey {
   };
   std::vector<arrival> zeros_;
   std::uint64_t samples_ = 0;       // since the first zero packet
-  std::uint64_t reported_dhz_ = 0;  // the sum
+  std::uint64_t reported_chz_ = 0;  // the sum
   ct_revolution revolution_;
   ct_information_reader reader_;
 };

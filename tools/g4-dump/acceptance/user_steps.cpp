@@ -97,7 +97,7 @@ using chz = std::optional<std::int32_t>;
 /// Sets another frequency: only a setting that is not the usual one shows whether it is kept. Returns what the lidar
 /// then has.
 chz change_frequency(tested_lidar& lidar, std::int32_t before_chz) {
-  const int middle_chz = (lidar.row.frequency.min_dhz + lidar.row.frequency.max_dhz) * 5;
+  const int middle_chz = (lidar.row.frequency.min_chz + lidar.row.frequency.max_chz) / 2;
   lidar.settings.begin_change(setting::frequency);
   static_cast<void>(lidar.link->ask(before_chz < middle_chz ? command::frequency_up_0_1_hz
                                                             : command::frequency_down_0_1_hz));

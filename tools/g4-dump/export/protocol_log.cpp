@@ -86,8 +86,8 @@ std::string words_for(packet_view packet) {
                       in_column(2, std::to_string(count)) +
                       (count == 1 ? " sample, checksum ok" : " samples, checksum ok");
   if (packet.is_zero()) words += ", zero packet";
-  if (packet.reported_frequency_dhz() > 0) {
-    words += ", " + with_decimals(packet.reported_frequency_dhz() / 10.0, 1) + " Hz";
+  if (packet.reported_frequency_chz() > 0) {
+    words += ", " + with_decimals(packet.reported_frequency_chz() / 100.0, 1) + " Hz";
   }
   if (packet.is_suspect()) words += ", suspect: its angles go back";
   return words;

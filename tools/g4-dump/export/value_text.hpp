@@ -64,7 +64,7 @@ char* put_seconds(char* out, std::int64_t time_ns) noexcept;
 [[nodiscard]] std::size_t returns_in(std::span<const point> points) noexcept;
 /// 0 if the device did not report it.
 [[nodiscard]] inline double reported_hz(const scan& scan) noexcept {
-  return scan.reported_frequency_dhz / 10.0;
+  return scan.reported_frequency_chz / 100.0;
 }
 /// A flag that makes a point doubtful, and its name in jsonl.
 struct doubt_name {
