@@ -68,7 +68,7 @@ int created(Handle** made, g4lidar_error* out, Body&& body, Pointers... needed) 
 /// Sets `into` to the model of this word, or leaves it for NULL; false if there is none.
 [[nodiscard]] bool take_model(const char* word, const model*& into) noexcept;
 /// A word that no model has.
-int refuse_model(g4lidar_error* out, const char* word);
+int refuse_model(g4lidar_error* out, const char* given);
 
 /// The same memory: the types of C have the attribute may_alias, so that both languages may use it, and
 /// their layouts are compared in layout.cpp.

@@ -17,7 +17,7 @@ inline constexpr std::string_view usb_prefix = "usb:";
 
 /// The name that is meant by one that names nothing: "/dev/ttyUSB0" by "ttyUSB0", "tcp:HOST:4000" by "udp:HOST:4000";
 /// empty if it is not known. Looks whether there is a file of this name. *Allocates.*
-[[nodiscard]] std::string meant_by(std::string_view name);
+[[nodiscard]] std::string meant_by(std::string_view given);
 
 /// The error for such a name; nothing for any other. *Allocates.*
 [[nodiscard]] std::optional<error> misspelled(std::string_view name);

@@ -63,8 +63,8 @@ void fill_laser_scan(const scan& source, message_header& header, std::size_t bin
   header.intensities = intensities;
 }
 
-laser_scan_numbers numbers_of(const message_header& header, std::size_t wanted_bins) noexcept {
-  const std::size_t bins = std::max<std::size_t>(wanted_bins, 1);
+laser_scan_numbers numbers_of(const message_header& header, std::size_t bins) noexcept {
+  bins = std::max<std::size_t>(bins, 1);
   constexpr float pi = std::numbers::pi_v<float>;
   const bool is_by_time = header.order == scan_order::time;
   const std::size_t first = is_by_time ? header.first_bin % bins : 0;

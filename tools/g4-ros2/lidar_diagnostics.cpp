@@ -34,10 +34,10 @@ diagnostic_status topic_report::status(const named_counts& topics) {
   return made;
 }
 
-lidar_diagnostics::lidar_diagnostics(dds::bus& on, const ros2_options& options,
+lidar_diagnostics::lidar_diagnostics(dds::bus& bus, const ros2_options& options,
                                      std::string_view name_space, std::string_view name)
     : prefix_(full_name(options.name_space, options.node).substr(1) + ": "),
-      topic_(publisher_of(on, name_space, options.topics.diagnostics,
+      topic_(publisher_of(bus, name_space, options.topics.diagnostics,
                           {.type = &dds::diagnostic_array, .depth = 10})) {
   if (!name.empty()) prefix_.append(name).append(" ");
 }

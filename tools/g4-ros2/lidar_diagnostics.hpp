@@ -37,7 +37,7 @@ class topic_report {
 class lidar_diagnostics {
  public:
   /// `name`: of the lidar; empty for the only one.
-  lidar_diagnostics(dds::bus& on, const ros2_options& options, std::string_view name_space,
+  lidar_diagnostics(dds::bus& bus, const ros2_options& options, std::string_view name_space,
                     std::string_view name);
 
   /// Publishes once a second, if there are subscribers: what `diagnose` gives, whose names begin with "g4lidar: ", which

@@ -24,9 +24,9 @@ std::string frame_id_of(const ros2_options& options, const std::vector<named_sou
   return options.merges ? options.frames.robot : frame_of(options, lidars.front().name);
 }
 
-service_lidar lidar_of(const ros2_options& options, const common_options& how,
+service_lidar lidar_of(const ros2_options& options, const common_options& common,
                        const std::string& name) {
-  service_lidar made = service_lidar_of(how, options.source);
+  service_lidar made = service_lidar_of(common, options.source);
   made.name = name;
   for (const setting_change& each : options.settings)
     made.settings.emplace_back(each.which->name, g4lidar::value_of(each.value));
@@ -35,25 +35,27 @@ service_lidar lidar_of(const ros2_options& options, const common_options& how,
 
 }  // namespace
 
-lidar_publisher::lidar_publisher(dds::bus& on, const ros2_options& options,
+lidar_publisher::lidar_publisher(dds::bus& bus, const ros2_options& options,
                                  const std::vector<named_source>& lidars, bool is_first)
     : options_(options),
       lidars_(lidars),
       name_space_(name_space_of(options, lidars)),
       is_played_(kind_of_source(lidars.front().source) == source_kind::recording),
-      diagnostics_(on, options, name_space_, options.merges ? "" : lidars.front().name),
-      messages_(on, options, name_space_, frame_id_of(options, lidars)) {
+      diagnostics_(bus, options, name_space_, options.merges ? "" : lidars.front().name),
+      messages_(bus, options, name_space_, frame_id_of(options, lidars)) {
   if (options.merges && options.order == scan_order::time) {
     throw bad_value("--merge cannot be used with --order time: a merged scan has no order of time");
   }
-  service_options how = service_options_of(options.common);
-  how.merges = options.merges;
-  how.restamps = true;  // nobody is to deskew the points of a message again
-  how.gives_points = is_played_ || kind_of_source(lidars.front().source) == source_kind::simulated;
-  how.is_standby = options.is_standby;
+  service_options shared = service_options_of(options.common);
+  shared.merges = options.merges;
+  shared.restamps = true;  // nobody is to deskew the points of a message again
+  shared.gives_points =
+      is_played_ || kind_of_source(lidars.front().source) == source_kind::simulated;
+  shared.is_standby = options.is_standby;
   if (options.common.deskew == deskewing::by_path) {
-    how.other_odometry_place = where_odometry_is(options, name_space_);
-    how.other_odometry = [this](odometry_path& into, const scan& /*whole*/, std::int64_t ahead_ns) {
+    shared.other_odometry_place = where_odometry_is(options, name_space_);
+    shared.other_odometry = [this](odometry_path& into, const scan& /*whole*/,
+                                   std::int64_t ahead_ns) {
       if (driven_) driven_->take(into, ahead_ns);
     };
   }
@@ -61,18 +63,19 @@ lidar_publisher::lidar_publisher(dds::bus& on, const ros2_options& options,
   read.reserve(lidars.size());
   for (std::size_t i = 0; i < lidars.size(); ++i)
     read.push_back(lidar_of(options, options_of(i), options.merges ? lidars[i].name : ""));
-  service_ = make_service(std::move(read), std::move(how), {{this, g4lidar::delivery::in_reader}});
+  service_ =
+      make_service(std::move(read), std::move(shared), {{this, g4lidar::delivery::in_reader}});
   if (const auto& mount = lidars.front().mount; mount && !options.merges) {
-    place_ = publisher_of(on, options.name_space, options.topics.tf_static,
+    place_ = publisher_of(bus, options.name_space, options.topics.tf_static,
                           {.type = &dds::tf_message, .depth = 1, .is_for_late = true});
     if (place_) place_->publish(place_message(options, frame_id_of(options, lidars), *mount));
   }
   const bool is_known = service_->has_odometry();
-  robot_ = std::make_unique<robot_messages>(on, options, name_space_,
+  robot_ = std::make_unique<robot_messages>(bus, options, name_space_,
                                             robot_knowledge{is_known, is_first && is_played_});
   if (options.common.deskew == deskewing::by_path && !is_known && options.topics.odometry != "off")
     driven_ = std::make_unique<odometry_subscription>(
-        on, full_name(name_space_, options.topics.odometry));
+        bus, full_name(name_space_, options.topics.odometry));
 }
 
 common_options lidar_publisher::options_of(std::size_t lidar) const {

@@ -21,9 +21,9 @@ namespace g4_tool {
 
 class lidar_publisher final : private service_sink {
  public:
-  /// `lidars`: one, or those that are merged. `is_first`: of several nodes, the one that publishes /clock. `on` and
+  /// `lidars`: one, or those that are merged. `is_first`: of several nodes, the one that publishes /clock. `bus` and
   /// `options` outlive it. Throws a failure, and bad_value.
-  lidar_publisher(dds::bus& on, const ros2_options& options,
+  lidar_publisher(dds::bus& bus, const ros2_options& options,
                   const std::vector<named_source>& lidars, bool is_first);
 
   /// Opens the lidars, once. Throws a failure.

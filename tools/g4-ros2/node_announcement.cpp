@@ -55,10 +55,10 @@ template <class Message>
 dds_return_t write(dds_entity_t participant, dds_entity_t writer, std::string node) {
   using gid = decltype(Message::gid);
   using node_info = std::remove_pointer_t<decltype(Message::node_entities_info_seq._buffer)>;
-  const auto gid_of = [](dds_entity_t of) {
+  const auto gid_of = [](dds_entity_t entity) {
     gid made{};
     dds_guid_t guid{};
-    static_cast<void>(dds_get_guid(of, &guid));
+    static_cast<void>(dds_get_guid(entity, &guid));
     std::ranges::copy(guid.v, made.data);
     return made;
   };
@@ -93,11 +93,11 @@ announced_form form_for(std::string_view distro) {
   return distro == "humble" ? announced_form::humble : announced_form::none;
 }
 
-node_announcement::node_announcement(dds::bus& on, announced_form form, std::string node)
-    : endpoint(on),
+node_announcement::node_announcement(dds::bus& bus, announced_form form, std::string node)
+    : endpoint(bus),
       form_(form == announced_form::automatic ? form_for(dds::variable("ROS_DISTRO")) : form),
       node_(std::move(node)) {
-  on.add(*this);
+  bus.add(*this);
 }
 
 void node_announcement::open(dds_entity_t participant, int* /*handle*/) {

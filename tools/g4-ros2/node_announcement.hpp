@@ -18,7 +18,7 @@ namespace g4_tool {
 class node_announcement final : public dds::endpoint {
  public:
   /// `node`: "/robot1/g4lidar".
-  node_announcement(dds::bus& on, announced_form form, std::string node);
+  node_announcement(dds::bus& bus, announced_form form, std::string node);
 
   void open(dds_entity_t participant, int* handle) override;
   void close() noexcept override;

@@ -15,36 +15,36 @@ namespace {
 constexpr std::int64_t clock_step_ns = 10'000'000;
 
 /// Nothing for one that no robot has.
-std::optional<stamped_odometry> odometry_of(const nav_msgs_msg_dds__Odometry_& from) {
-  const auto& [place, turn] = from.pose.pose;
-  const auto& [linear, angular] = from.twist.twist;
+std::optional<stamped_odometry> odometry_of(const nav_msgs_msg_dds__Odometry_& message) {
+  const auto& [place, turn] = message.pose.pose;
+  const auto& [linear, angular] = message.twist.twist;
   return planar_odometry(
-      std::int64_t{from.header.stamp.sec} * 1'000'000'000 + from.header.stamp.nanosec,
+      std::int64_t{message.header.stamp.sec} * 1'000'000'000 + message.header.stamp.nanosec,
       {place.x, place.y, place.z, turn.x, turn.y, turn.z, turn.w},
       {linear.x, linear.y, linear.z, angular.x, angular.y, angular.z});
 }
 
 }  // namespace
 
-robot_messages::robot_messages(dds::bus& on, const ros2_options& options,
+robot_messages::robot_messages(dds::bus& bus, const ros2_options& options,
                                std::string_view name_space, const robot_knowledge& known)
     : options_(options) {
   if (known.has_odometry) {
-    odometry_ = publisher_of(on, name_space, options.topics.odometry, {.type = &dds::odometry});
-    tf_ = publisher_of(on, options.name_space, options.topics.tf,
+    odometry_ = publisher_of(bus, name_space, options.topics.odometry, {.type = &dds::odometry});
+    tf_ = publisher_of(bus, options.name_space, options.topics.tf,
                        {.type = &dds::tf_message, .depth = 100});
   }
-  if (known.has_clock) clock_ = publisher_of(on, "", "/clock", {.type = &dds::clock_message});
+  if (known.has_clock) clock_ = publisher_of(bus, "", "/clock", {.type = &dds::clock_message});
 }
 
-void robot_messages::publish(const stamped_odometry& at, std::int64_t stamp_ns) {
+void robot_messages::publish(const stamped_odometry& odometry, std::int64_t stamp_ns) {
   if (odometry_ && odometry_->is_wanted()) {
     message_.clear();
     put_odometry({.stamp_ns = stamp_ns,
                   .frame_id = options_.frames.odometry,
                   .child_frame_id = options_.frames.robot,
-                  .pose = at.pose,
-                  .twist = at.twist},
+                  .pose = odometry.pose,
+                  .twist = odometry.twist},
                  message_);
     odometry_->publish(message_);
   }
@@ -53,7 +53,7 @@ void robot_messages::publish(const stamped_odometry& at, std::int64_t stamp_ns) 
     put_tf_message({.stamp_ns = stamp_ns,
                     .frame_id = options_.frames.odometry,
                     .child_frame_id = options_.frames.robot,
-                    .place = {at.pose, false}},
+                    .place = {odometry.pose, false}},
                    message_);
     tf_->publish(message_);
   }
@@ -85,9 +85,9 @@ std::vector<std::uint8_t> place_message(const ros2_options& options, const std::
   return message;
 }
 
-odometry_subscription::odometry_subscription(dds::bus& on, std::string name)
-    : dds::endpoint(on), name_(std::move(name)) {
-  on.add(*this);
+odometry_subscription::odometry_subscription(dds::bus& bus, std::string name)
+    : dds::endpoint(bus), name_(std::move(name)) {
+  bus.add(*this);
 }
 
 void odometry_subscription::open(dds_entity_t participant, int* /*handle*/) {

@@ -26,11 +26,11 @@ struct robot_knowledge {
 /// recording. *Single thread.*
 class robot_messages {
  public:
-  robot_messages(dds::bus& on, const ros2_options& options, std::string_view name_space,
+  robot_messages(dds::bus& bus, const ros2_options& options, std::string_view name_space,
                  const robot_knowledge& known);
 
   /// A pose, at a time since 1970.
-  void publish(const stamped_odometry& at, std::int64_t stamp_ns);
+  void publish(const stamped_odometry& odometry, std::int64_t stamp_ns);
   /// The time of a recording, since 1970; at most a hundred times a second.
   void publish_clock(std::int64_t now_ns);
 
@@ -55,7 +55,7 @@ class robot_messages {
 /// The odometry that others publish, not this program. *Any thread.*
 class odometry_subscription final : public dds::endpoint {
  public:
-  odometry_subscription(dds::bus& on, std::string name);
+  odometry_subscription(dds::bus& bus, std::string name);
 
   void open(dds_entity_t participant, int* handle) override;
   void close() noexcept override;

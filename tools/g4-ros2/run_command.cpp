@@ -11,16 +11,16 @@
 
 namespace g4_tool {
 
-run_command::run_command(dds::bus& on, std::string name, std::function<void(bool)> use)
-    : endpoint(on), name_(std::move(name)), use_(std::move(use)) {
-  on.add(*this);
+run_command::run_command(dds::bus& bus, std::string name, std::function<void(bool)> use)
+    : endpoint(bus), name_(std::move(name)), use_(std::move(use)) {
+  bus.add(*this);
 }
 
 void run_command::open(dds_entity_t participant, int* handle) {
   const dds::qos quality = dds::qos_of({.type = &dds::bool_message, .depth = 10});
   const std::unique_ptr<dds_listener_t, void (*)(dds_listener_t*)> listener(
       dds_create_listener(handle), dds_delete_listener);
-  dds_lset_data_available(listener.get(), [](dds_entity_t, void* with) { dds::wake(with); });
+  dds_lset_data_available(listener.get(), [](dds_entity_t, void* context) { dds::wake(context); });
   topic_ = dds::entity(dds_create_topic(participant, dds::bool_message.descriptor,
                                         dds::dds_name(name_).c_str(), nullptr, nullptr));
   reader_ =

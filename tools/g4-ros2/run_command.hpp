@@ -13,7 +13,7 @@ namespace g4_tool {
 class run_command final : public dds::endpoint {
  public:
   /// `name`: "/g4lidar/run". `use` gets each command: whether the motors may turn.
-  run_command(dds::bus& on, std::string name, std::function<void(bool)> use);
+  run_command(dds::bus& bus, std::string name, std::function<void(bool)> use);
 
   void open(dds_entity_t participant, int* handle) override;
   void close() noexcept override;

@@ -5,24 +5,24 @@
 
 namespace g4_tool {
 
-std::unique_ptr<dds::publisher> publisher_of(dds::bus& on, std::string_view name_space,
+std::unique_ptr<dds::publisher> publisher_of(dds::bus& bus, std::string_view name_space,
                                              std::string_view name, const dds::topic& what) {
   if (name == "off") return nullptr;
   dds::topic named = what;
   named.name = full_name(name_space, name);
-  return std::make_unique<dds::publisher>(on, std::move(named));
+  return std::make_unique<dds::publisher>(bus, std::move(named));
 }
 
-scan_messages::scan_messages(dds::bus& on, const ros2_options& options, std::string_view name_space,
-                             std::string frame_id)
+scan_messages::scan_messages(dds::bus& bus, const ros2_options& options,
+                             std::string_view name_space, std::string frame_id)
     : options_(options), frame_id_(std::move(frame_id)) {
   const auto topic_of = [&options](const dds::message_type& type) {
     return dds::topic{.type = &type,
                       .is_reliable = options.transport.is_reliable,
                       .depth = options.transport.depth};
   };
-  scan_ = publisher_of(on, name_space, options.topics.scan, topic_of(dds::laser_scan));
-  points_ = publisher_of(on, name_space, options.topics.points, topic_of(dds::point_cloud2));
+  scan_ = publisher_of(bus, name_space, options.topics.scan, topic_of(dds::laser_scan));
+  points_ = publisher_of(bus, name_space, options.topics.points, topic_of(dds::point_cloud2));
 }
 
 message_header scan_messages::header_of(const service_scan& made) const {

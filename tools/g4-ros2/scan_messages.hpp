@@ -24,7 +24,7 @@ using named_counts = std::vector<std::pair<std::string, dds::publisher_counts>>;
 /// The topics of one lidar, or of all that are merged. *Single thread* but for what is marked.
 class scan_messages {
  public:
-  scan_messages(dds::bus& on, const ros2_options& options, std::string_view name_space,
+  scan_messages(dds::bus& bus, const ros2_options& options, std::string_view name_space,
                 std::string frame_id);
 
   /// On /scan: service_scan::for_grid.
@@ -51,7 +51,7 @@ class scan_messages {
 };
 
 /// The publisher of a topic that the options name; null if it is off.
-[[nodiscard]] std::unique_ptr<dds::publisher> publisher_of(dds::bus& on,
+[[nodiscard]] std::unique_ptr<dds::publisher> publisher_of(dds::bus& bus,
                                                            std::string_view name_space,
                                                            std::string_view name,
                                                            const dds::topic& what);

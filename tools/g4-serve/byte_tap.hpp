@@ -45,18 +45,18 @@ class byte_tap {
  private:
   class observed final : public g4lidar::forwarding_transport {
    public:
-    observed(std::unique_ptr<g4lidar::transport> inner, byte_tap& to)
-        : forwarding_transport(std::move(inner)), to_(to) {}
+    observed(std::unique_ptr<g4lidar::transport> inner, byte_tap& tap)
+        : forwarding_transport(std::move(inner)), tap_(tap) {}
 
     [[nodiscard]] g4lidar::result<g4lidar::received> read(
         std::span<std::uint8_t> out, std::int64_t deadline_ns) noexcept override {
       auto got = inner().read(out, deadline_ns);
-      if (got) to_.keep(out.first(got->count), got->arrival_ns);
+      if (got) tap_.keep(out.first(got->count), got->arrival_ns);
       return got;
     }
 
    private:
-    byte_tap& to_;
+    byte_tap& tap_;
   };
 
   void keep(g4lidar::bytes data, std::int64_t arrival_ns) noexcept {

@@ -61,23 +61,24 @@ void client_registry::disconnect(client* gone) {
   clients_.remove_if([gone](const client& each) { return &each == gone; });
 }
 
-bool client_registry::receive(client& from, std::string_view text) {
-  return from.kind == client_kind::page ? receive_page(from, text) : receive_foxglove(from, text);
+bool client_registry::receive(client& sender, std::string_view text) {
+  return sender.kind == client_kind::page ? receive_page(sender, text)
+                                          : receive_foxglove(sender, text);
 }
 
-bool client_registry::receive_page(client& from, std::string_view text) {
+bool client_registry::receive_page(client& sender, std::string_view text) {
   const auto request = parse_page_request(text);
   if (!request) return false;
   if (const auto* bad = std::get_if<bad_request>(&*request)) {
-    answer(from.id, bad->of, bad->message);
+    answer(sender.id, bad->of, bad->message);
   } else if (const auto* wanted = std::get_if<set_request>(&*request)) {
     if (!allows_set_) {
-      answer(from.id, "set", "the settings are read-only: start g4-serve with --allow-set");
+      answer(sender.id, "set", "the settings are read-only: start g4-serve with --allow-set");
     } else {
-      take_slow(from, "set", [&](auto done) { actions_.set(*wanted, std::move(done)); });
+      take_slow(sender, "set", [&](auto done) { actions_.set(*wanted, std::move(done)); });
     }
   } else if (const auto* recording = std::get_if<record_request>(&*request)) {
-    take_slow(from, "record", [&](auto done) { actions_.record(*recording, std::move(done)); });
+    take_slow(sender, "record", [&](auto done) { actions_.record(*recording, std::move(done)); });
   } else {
     actions_.play(std::get<play_request>(*request));
   }
@@ -85,16 +86,16 @@ bool client_registry::receive_page(client& from, std::string_view text) {
 }
 
 void client_registry::take_slow(
-    client& from, const std::string& op,
+    client& sender, const std::string& op,
     const std::function<void(std::function<void(const std::string&)>)>& act) {
   {
     const std::lock_guard lock(mutex_);
-    if (std::exchange(from.is_waiting, true)) {
-      from.waiting.add(text_of(error_text(op, "the request before it is not done yet")));
+    if (std::exchange(sender.is_waiting, true)) {
+      sender.waiting.add(text_of(error_text(op, "the request before it is not done yet")));
       return;
     }
   }
-  act([this, op, id = from.id](const std::string& error) {
+  act([this, op, id = sender.id](const std::string& error) {
     {
       const std::lock_guard lock(mutex_);
       const auto found = std::ranges::find(clients_, id, &client::id);
@@ -104,21 +105,21 @@ void client_registry::take_slow(
   });
 }
 
-bool client_registry::receive_foxglove(client& from, std::string_view text) {
+bool client_registry::receive_foxglove(client& sender, std::string_view text) {
   const auto request = parse_foxglove_request(text);
   if (!request) return false;
   const std::lock_guard lock(mutex_);
-  const auto warn = [&from](const std::string& message) {
-    if (!message.empty()) from.waiting.add(text_of(foxglove_status_text(1, message)));
+  const auto warn = [&sender](const std::string& message) {
+    if (!message.empty()) sender.waiting.add(text_of(foxglove_status_text(1, message)));
   };
   if (const auto* wanted = std::get_if<subscribe_request>(&*request)) {
-    for (const auto& entry : wanted->entries) warn(subscribe(from, entry));
+    for (const auto& entry : wanted->entries) warn(subscribe(sender, entry));
   } else if (const auto* unwanted = std::get_if<unsubscribe_request>(&*request)) {
     for (std::size_t i = 0; i < channel_count; ++i) {
-      auto& subscription = from.subscriptions[i];
+      auto& subscription = sender.subscriptions[i];
       if (!subscription || std::ranges::count(unwanted->ids, *subscription) == 0) continue;
       subscription.reset();
-      from.waiting.clear(i);
+      sender.waiting.clear(i);
     }
   } else {
     warn(fmt::format("this server does not know '{}'", std::get<other_request>(*request).op));
@@ -126,26 +127,26 @@ bool client_registry::receive_foxglove(client& from, std::string_view text) {
   return true;
 }
 
-std::string client_registry::subscribe(client& from, const subscribe_request::entry& wanted) {
-  const auto which = channel_of(wanted.channel_id);
-  if (!which) return fmt::format("there is no channel {}", wanted.channel_id);
-  if (std::ranges::count(from.subscriptions, wanted.id) > 0) {
+std::string client_registry::subscribe(client& sender, const subscribe_request::entry& wanted) {
+  const auto target = channel_of(wanted.channel_id);
+  if (!target) return fmt::format("there is no channel {}", wanted.channel_id);
+  if (std::ranges::count(sender.subscriptions, wanted.id) > 0) {
     return fmt::format("the subscription {} is there already", wanted.id);
   }
-  auto& subscription = from.subscriptions[static_cast<std::size_t>(*which)];
+  auto& subscription = sender.subscriptions[static_cast<std::size_t>(*target)];
   if (subscription) return fmt::format("the channel {} is subscribed already", wanted.channel_id);
   subscription = wanted.id;
   return {};
 }
 
-std::optional<outgoing> client_registry::take(client& to) {
+std::optional<outgoing> client_registry::take(client& receiver) {
   const std::lock_guard lock(mutex_);
-  return to.waiting.take();
+  return receiver.waiting.take();
 }
 
-bool client_registry::has_more(const client& to) const {
+bool client_registry::has_more(const client& receiver) const {
   const std::lock_guard lock(mutex_);
-  return !to.waiting.is_empty();
+  return !receiver.waiting.is_empty();
 }
 
 void client_registry::for_each_ready(const std::function<void(void*)>& use) {
@@ -187,9 +188,9 @@ void client_registry::to_pages(std::size_t slot, bool is_text, const shared_byte
   });
 }
 
-void client_registry::answer(std::uint64_t id, std::string_view of, const std::string& message) {
+void client_registry::answer(std::uint64_t id, std::string_view op, const std::string& message) {
   put_messages([&](client& each) {
-    if (each.id == id) each.waiting.add(text_of(error_text(of, message)));
+    if (each.id == id) each.waiting.add(text_of(error_text(op, message)));
   });
 }
 
@@ -225,16 +226,16 @@ void client_registry::page_scan(std::vector<std::uint8_t> message) {
   to_pages(scan_slot, false, share(std::move(message)));
 }
 
-void client_registry::publish(channel which, std::int64_t stamp_ns,
+void client_registry::publish(channel target, std::int64_t stamp_ns,
                               std::vector<std::uint8_t> message) {
   const shared_bytes payload = share(std::move(message));
-  const auto slot = static_cast<std::size_t>(which);
+  const auto slot = static_cast<std::size_t>(target);
   put_messages([&](client& each) {
     const auto& subscription = each.subscriptions[slot];
     if (!subscription) return;
     const auto replaced =
         each.waiting.replace(slot, message_data(*subscription, stamp_ns, payload));
-    if (which == channel::from_device && replaced == 1) {
+    if (target == channel::from_device && replaced == 1) {
       each.waiting.add(text_of(foxglove_status_text(1, bytes_left_out)));
     }
   });

@@ -52,10 +52,10 @@ class client_registry {
   [[nodiscard]] client* connect(client_kind kind, void* socket);
   void disconnect(client* gone);
   /// Handles a text of a client. False if it violates the protocol: then close the connection.
-  [[nodiscard]] bool receive(client& from, std::string_view text);
+  [[nodiscard]] bool receive(client& sender, std::string_view text);
   /// The next message for it; nothing if none waits.
-  [[nodiscard]] std::optional<outgoing> take(client& to);
-  [[nodiscard]] bool has_more(const client& to) const;
+  [[nodiscard]] std::optional<outgoing> take(client& receiver);
+  [[nodiscard]] bool has_more(const client& receiver) const;
   /// Calls `use` with the socket of each client that has waiting messages.
   void for_each_ready(const std::function<void(void*)>& use);
   /// The last status as JSON, for HTTP.
@@ -67,8 +67,8 @@ class client_registry {
   struct wanted_messages {
     bool page = false;
     std::array<bool, channel_count> channels{};
-    [[nodiscard]] bool wants(channel which) const noexcept {
-      return channels[static_cast<std::size_t>(which)];
+    [[nodiscard]] bool wants(channel target) const noexcept {
+      return channels[static_cast<std::size_t>(target)];
     }
   };
   [[nodiscard]] wanted_messages wanted() const;
@@ -80,7 +80,7 @@ class client_registry {
   void event(const std::string& text);
   /// Sends a binary message to all pages.
   void page_scan(std::vector<std::uint8_t> message);
-  void publish(channel which, std::int64_t stamp_ns, std::vector<std::uint8_t> message);
+  void publish(channel target, std::int64_t stamp_ns, std::vector<std::uint8_t> message);
 
   [[nodiscard]] std::size_t client_count() const;
 
@@ -88,14 +88,15 @@ class client_registry {
   /// Calls `put` with each client, under the lock, and then wake().
   void put_messages(const std::function<void(client&)>& put);
   void to_pages(std::size_t slot, bool is_text, const shared_bytes& payload);
-  void answer(std::uint64_t id, std::string_view of, const std::string& message);
+  void answer(std::uint64_t id, std::string_view op, const std::string& message);
   /// Calls `act` unless the last such request of the client is not done yet.
-  void take_slow(client& from, const std::string& op,
+  void take_slow(client& sender, const std::string& op,
                  const std::function<void(std::function<void(const std::string&)>)>& act);
-  [[nodiscard]] bool receive_page(client& from, std::string_view text);
-  [[nodiscard]] bool receive_foxglove(client& from, std::string_view text);
+  [[nodiscard]] bool receive_page(client& sender, std::string_view text);
+  [[nodiscard]] bool receive_foxglove(client& sender, std::string_view text);
   /// Returns the error; empty if there is none.
-  [[nodiscard]] static std::string subscribe(client& from, const subscribe_request::entry& wanted);
+  [[nodiscard]] static std::string subscribe(client& sender,
+                                             const subscribe_request::entry& wanted);
 
   const bool allows_set_;
   const lidar_actions actions_;

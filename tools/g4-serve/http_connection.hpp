@@ -51,11 +51,11 @@ class http_connection : public std::enable_shared_from_this<http_connection> {
   };
 
   /// `all`: where it is until it ends, by the last progress, the oldest first.
-  http_connection(tcp_stream::socket_type socket, list& all, const callbacks& to)
+  http_connection(tcp_stream::socket_type socket, list& all, const callbacks& handlers)
       : stream_(std::move(socket)),
         all_(all),
         place_(all.insert(all.end(), this)),
-        callbacks_(to) {}
+        callbacks_(handlers) {}
   http_connection(const http_connection&) = delete;
   http_connection& operator=(const http_connection&) = delete;
   ~http_connection() {

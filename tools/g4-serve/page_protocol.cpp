@@ -93,14 +93,14 @@ json measured(const std::vector<stage_report>& stages, diagnostic_stage where,
 }
 
 /// A row of the table of settings, with the values and limits of a model: how the page asks for a value.
-json json_of(const setting_info& row, const g4lidar::model& of) {
+json json_of(const setting_info& row, const g4lidar::model& model) {
   json made{{"name", row.name}, {"text", row.text}, {"unit", row.unit}};
   if (row.change == request_kind::set_scan_frequency) {
-    made["least"] = of.frequency.min_chz / 100.0;
-    made["most"] = of.frequency.max_chz / 100.0;
+    made["least"] = model.frequency.min_chz / 100.0;
+    made["most"] = model.frequency.max_chz / 100.0;
     made["step"] = row.step / 100.0;
   } else if (row.change == request_kind::set_sample_rate) {
-    for (const auto& rate : of.rates.entries) {
+    for (const auto& rate : model.rates.entries) {
       if (rate.hz != 0) made["values"].push_back(std::to_string(rate.hz));
     }
   } else {
@@ -110,11 +110,11 @@ json json_of(const setting_info& row, const g4lidar::model& of) {
 }
 
 /// The settings that a model has; none while it is not known.
-json setting_rows(const g4lidar::model* of) {
+json setting_rows(const g4lidar::model* model) {
   json rows = json::array();
-  if (of == nullptr) return rows;
+  if (model == nullptr) return rows;
   for (const setting_info& each : all_settings()) {
-    if (has_request(*of, each.change)) rows.push_back(json_of(each, *of));
+    if (has_request(*model, each.change)) rows.push_back(json_of(each, *model));
   }
   return rows;
 }
@@ -163,8 +163,8 @@ void add(const page_recording& one, std::optional<page_recording>& all) {
     all = one;
     return;
   }
-  const auto join = [](std::string& to, const std::string& more) {
-    if (!more.empty()) to += (to.empty() ? "" : ", ") + more;
+  const auto join = [](std::string& text, const std::string& more) {
+    if (!more.empty()) text += (text.empty() ? "" : ", ") + more;
   };
   join(all->file, one.file);
   join(all->last, one.last);
@@ -222,8 +222,8 @@ std::string event_text(std::string_view what, double time_s, std::string_view li
   return json_line(made);
 }
 
-std::string error_text(std::string_view of, std::string_view message) {
-  return json_line({{"op", "error"}, {"of", of}, {"message", message}});
+std::string error_text(std::string_view op, std::string_view message) {
+  return json_line({{"op", "error"}, {"of", op}, {"message", message}});
 }
 
 page_status merged_status(std::vector<page_status> lidars) {

@@ -70,7 +70,7 @@ struct page_hello {
 /// `lidar`: of several ones; else empty.
 [[nodiscard]] std::string event_text(std::string_view what, double time_s,
                                      std::string_view lidar = {});
-[[nodiscard]] std::string error_text(std::string_view of, std::string_view message);
+[[nodiscard]] std::string error_text(std::string_view op, std::string_view message);
 
 /// The recording of the server.
 struct page_recording {

@@ -70,8 +70,8 @@ class watched_transport final : public g4lidar::forwarding_transport {
 }  // namespace
 
 page_recorder::page_recorder(std::string directory, std::uint64_t most_bytes,
-                             const recorded_lidar& which)
-    : directory_(std::move(directory)), most_bytes_(most_bytes), which_(which) {
+                             const recorded_lidar& lidar)
+    : directory_(std::move(directory)), most_bytes_(most_bytes), lidar_(lidar) {
   if (directory_.empty()) return;
   std::error_code why;
   const bool is_directory = std::filesystem::is_directory(directory_, why);
@@ -87,12 +87,12 @@ page_recorder::page_recorder(std::string directory, std::uint64_t most_bytes,
 page_recorder::~page_recorder() { end(); }
 
 std::unique_ptr<g4lidar::connector> page_recorder::observe(
-    std::unique_ptr<g4lidar::connector> from) {
-  if (!is_allowed()) return from;
+    std::unique_ptr<g4lidar::connector> source) {
+  if (!is_allowed()) return source;
   const auto watched = for_each_connection([this](std::unique_ptr<g4lidar::transport> port) {
     return std::make_unique<watched_transport>(std::move(port), [this] { check(); });
   });
-  return *watched(switch_.observe(std::move(from)));
+  return *watched(switch_.observe(std::move(source)));
 }
 
 void page_recorder::opened(g4lidar::lidar& device) {
@@ -126,7 +126,7 @@ std::string page_recorder::measure(std::uint64_t& free_bytes) const {
         "the recordings have {} MB, and --record-limit allows {} MB: remove some, or raise it",
         bytes >> 20U, most_bytes_ >> 20U);
   }
-  free_bytes = (most_bytes_ - bytes) / which_.count;
+  free_bytes = (most_bytes_ - bytes) / lidar_.count;
   return {};
 }
 
@@ -147,7 +147,7 @@ std::string page_recorder::set(bool is_on) {
 std::string page_recorder::begin() {
   if (std::string why = measure(free_bytes_); !why.empty()) return why;
   for (int number = 1; number <= most_of_a_second; ++number) {
-    const std::string name = name_now(which_.name, number);
+    const std::string name = name_now(lidar_.name, number);
     auto made = g4lidar::recording_writer::create(directory_ + '/' + name, {.model = model_});
     if (!made && made.error().system_errno() == EEXIST) continue;
     if (!made) return reason_of(made.error(), name);
@@ -168,8 +168,8 @@ void page_recorder::add(const g4lidar::scan& found) {
   if (writer_ && !found.is_piece()) writer_->scan(found);
 }
 
-void page_recorder::add(const g4lidar::stamped_odometry& at) {
-  if (writer_) writer_->odometry(at);
+void page_recorder::add(const g4lidar::stamped_odometry& odometry) {
+  if (writer_) writer_->odometry(odometry);
 }
 
 void page_recorder::check() {

@@ -35,7 +35,7 @@ class page_recorder {
   /// `directory`: empty if nobody may record. `most_bytes`: of all recordings in it; each lidar gets an equal part of
   /// what is free. Throws a failure if it cannot be written to.
   page_recorder(std::string directory, std::uint64_t most_bytes,
-                const recorded_lidar& which = only_lidar());
+                const recorded_lidar& lidar = only_lidar());
   page_recorder(const page_recorder&) = delete;
   page_recorder& operator=(const page_recorder&) = delete;
   ~page_recorder();
@@ -43,7 +43,7 @@ class page_recorder {
   [[nodiscard]] bool is_allowed() const noexcept { return !directory_.empty(); }
   /// For lidar_options::wrap. This outlives the result.
   [[nodiscard]] std::unique_ptr<g4lidar::connector> observe(
-      std::unique_ptr<g4lidar::connector> from);
+      std::unique_ptr<g4lidar::connector> source);
   /// The lidar was opened, and does not scan yet.
   void opened(g4lidar::lidar& device);
 
@@ -54,7 +54,7 @@ class page_recorder {
   /// Ends it, and removes the file.
   void discard() { end({}, true); }
   void add(const g4lidar::scan& found);
-  void add(const g4lidar::stamped_odometry& at);
+  void add(const g4lidar::stamped_odometry& odometry);
 
   /// Nothing if nobody may record. *Any thread.*
   [[nodiscard]] std::optional<page_recording> status() const;
@@ -70,7 +70,7 @@ class page_recorder {
 
   const std::string directory_;
   const std::uint64_t most_bytes_;
-  const recorded_lidar which_;
+  const recorded_lidar lidar_;
   std::uint64_t free_bytes_ = 0;  // of this recording
   g4lidar::recorded_device known_;
   const g4lidar::model* model_ = nullptr;  // of the last scan

@@ -63,25 +63,25 @@ class common_answer {
 }  // namespace
 
 scan_publisher::scan_publisher(const serve_options& options,
-                               const std::vector<named_source>& lidars, client_registry& to,
+                               const std::vector<named_source>& lidars, client_registry& clients,
                                service_sink* other)
     : options_(options),
       frame_id_(frame_id_of(options)),
-      registry_(to),
+      registry_(clients),
       models_(lidars.size(), nullptr) {
   std::vector<service_lidar> served;
   for (const named_source& each : lidars) {
     served_lidar& made = lidars_.emplace_back(options, each, lidars.size());
     served.push_back(made.for_service());
   }
-  service_options how = service_options_of(options.common);
-  how.merges = options.merges;
-  how.follows_motion = true;
-  how.restamps = true;  // nobody is to deskew the points of a message again
-  how.reads_settings = true;
+  service_options shared = service_options_of(options.common);
+  shared.merges = options.merges;
+  shared.follows_motion = true;
+  shared.restamps = true;  // nobody is to deskew the points of a message again
+  shared.reads_settings = true;
   std::vector<service_output> outputs{{this, delivery::in_reader}};
   if (other != nullptr) outputs.push_back({other, delivery::in_reader});
-  service_ = make_service(std::move(served), std::move(how), outputs);
+  service_ = make_service(std::move(served), std::move(shared), outputs);
 }
 
 void scan_publisher::start() { value_of(service_->start()); }

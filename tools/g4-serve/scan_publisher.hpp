@@ -22,9 +22,9 @@ namespace g4_tool {
 class scan_publisher final : private service_sink {
  public:
   /// `lidars`: one, or several ones that are merged. `other`: one more sink, called after this one. Throws a failure if
-  /// the mask cannot be read, and bad_value for too many lidars. `to` outlives this.
+  /// the mask cannot be read, and bad_value for too many lidars. `clients` outlives this.
   scan_publisher(const serve_options& options, const std::vector<named_source>& lidars,
-                 client_registry& to, service_sink* other = nullptr);
+                 client_registry& clients, service_sink* other = nullptr);
 
   /// Opens the lidars, once. Throws a failure.
   void start();

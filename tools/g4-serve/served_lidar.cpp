@@ -9,22 +9,22 @@
 
 namespace g4_tool {
 
-served_lidar::served_lidar(const serve_options& options, const named_source& which,
+served_lidar::served_lidar(const serve_options& options, const named_source& source,
                            std::size_t count)
-    : name_(which.name),
+    : name_(source.name),
       options_(options.common),
       playback_{.speed = options.speed, .loop = options.loops},
       recorder_(options.record_directory, options.record_limit,
-                {.name = which.name, .count = count}) {
-  options_.source = which.source;
-  options_.mount = which.mount;
+                {.name = source.name, .count = count}) {
+  options_.source = source.source;
+  options_.mount = source.mount;
 }
 
 service_lidar served_lidar::for_service() {
   auto tap = for_each_connection([this](auto inner) { return bytes_.observe(std::move(inner)); });
   if (is_live() && recorder_.is_allowed()) {
-    tap = [this, bytes = std::move(tap)](std::unique_ptr<connector> from) {
-      return bytes(recorder_.observe(std::move(from)));
+    tap = [this, bytes = std::move(tap)](std::unique_ptr<connector> inner) {
+      return bytes(recorder_.observe(std::move(inner)));
     };
   }
   service_lidar made = service_lidar_of(options_, {.playback = playback_, .wrap = std::move(tap)});

@@ -20,7 +20,7 @@ namespace g4_tool {
 class served_lidar {
  public:
   /// One of `count`.
-  served_lidar(const serve_options& options, const named_source& which, std::size_t count);
+  served_lidar(const serve_options& options, const named_source& source, std::size_t count);
   served_lidar(const served_lidar&) = delete;
   served_lidar& operator=(const served_lidar&) = delete;
 

@@ -114,7 +114,7 @@ void bus::add(endpoint& what) {
 
 void bus::remove(const endpoint& what) noexcept { std::erase(endpoints_, &what); }
 
-endpoint::~endpoint() { on_.remove(*this); }
+endpoint::~endpoint() { bus_.remove(*this); }
 
 void bus::close() noexcept {
   for (endpoint* each : endpoints_) each->close();

@@ -23,8 +23,8 @@ class bus;
 /// destroyed in the thread of the bus.
 class endpoint {
  public:
-  /// The constructor of a derived class ends with bus::add(). `on` outlives it.
-  explicit endpoint(bus& on) noexcept : on_(on) {}
+  /// The constructor of a derived class ends with bus::add(). `bus` outlives it.
+  explicit endpoint(bus& bus) noexcept : bus_(bus) {}
   endpoint(const endpoint&) = delete;
   endpoint& operator=(const endpoint&) = delete;
   virtual ~endpoint();
@@ -36,7 +36,7 @@ class endpoint {
   [[nodiscard]] virtual std::string_view published() const noexcept { return {}; }
 
  private:
-  bus& on_;
+  bus& bus_;
 };
 
 /// For listeners whose argument is the handle of a bus: makes the handle readable.
@@ -101,7 +101,7 @@ struct publisher_counts {
 /// Publishes a topic. *Any thread.* Never waits for a subscriber.
 class publisher final : public endpoint {
  public:
-  publisher(bus& on, topic what);
+  publisher(bus& bus, topic what);
 
   void open(dds_entity_t participant, int* handle) override;
   void close() noexcept override;

@@ -77,11 +77,11 @@ constexpr ddsrt_xmlp_callbacks element_callbacks{
     .error = [](void*, const char*, int) {}};  // Cyclone DDS reports it
 
 /// Parses and releases `of`; the characters that were read. Stops at the end of the first element.
-std::size_t parse(ddsrt_xmlp_state* of) {
-  ddsrt_xmlp_set_options(of, 0);
-  static_cast<void>(ddsrt_xmlp_parse(of));
-  const std::size_t read = ddsrt_xmlp_get_bufpos(of);
-  ddsrt_xmlp_free(of);
+std::size_t parse(ddsrt_xmlp_state* parser) {
+  ddsrt_xmlp_set_options(parser, 0);
+  static_cast<void>(ddsrt_xmlp_parse(parser));
+  const std::size_t read = ddsrt_xmlp_get_bufpos(parser);
+  ddsrt_xmlp_free(parser);
   return read;
 }
 
@@ -113,14 +113,14 @@ std::string variable(const char* name) {
 }
 
 network read_network(std::optional<std::uint32_t> domain, const std::string& interface,
-                     const environment& from) {
-  network made{.interface = interface, .more = from("CYCLONEDDS_URI")};
-  made.domain = domain ? *domain : domain_of(from("ROS_DOMAIN_ID"));
-  const bool only_here = from("ROS_LOCALHOST_ONLY") == "1";
+                     const environment& variables) {
+  network made{.interface = interface, .more = variables("CYCLONEDDS_URI")};
+  made.domain = domain ? *domain : domain_of(variables("ROS_DOMAIN_ID"));
+  const bool only_here = variables("ROS_LOCALHOST_ONLY") == "1";
   made.range =
-      only_here ? discovery_range::localhost : range_of(from("ROS_AUTOMATIC_DISCOVERY_RANGE"));
+      only_here ? discovery_range::localhost : range_of(variables("ROS_AUTOMATIC_DISCOVERY_RANGE"));
   if (only_here || made.range == discovery_range::off) return made;
-  std::istringstream words(from("ROS_STATIC_PEERS"));
+  std::istringstream words(variables("ROS_STATIC_PEERS"));
   for (std::string word; std::getline(words, word, ';');) {
     if (!word.empty()) made.peers.push_back(word);
   }

@@ -34,7 +34,7 @@ using environment = std::function<std::string(const char*)>;
 /// is logged and has the effect that it has in ROS 2. Throws bad_value for an invalid domain.
 [[nodiscard]] network read_network(std::optional<std::uint32_t> domain,
                                    const std::string& interface,
-                                   const environment& from = variable);
+                                   const environment& variables = variable);
 
 /// Whether CYCLONEDDS_URI names network interfaces itself, which then are the only ones.
 [[nodiscard]] bool names_interfaces(const std::string& uri);

@@ -30,7 +30,9 @@ qos qos_of(const topic& what) {
   return made;
 }
 
-publisher::publisher(bus& on, topic what) : endpoint(on), what_(std::move(what)) { on.add(*this); }
+publisher::publisher(bus& bus, topic what) : endpoint(bus), what_(std::move(what)) {
+  bus.add(*this);
+}
 
 void publisher::open(dds_entity_t participant, int* handle) {
   const std::lock_guard lock(mutex_);
@@ -39,7 +41,7 @@ void publisher::open(dds_entity_t participant, int* handle) {
       dds_create_listener(handle), dds_delete_listener);
   dds_lset_publication_matched(
       listener.get(),
-      [](dds_entity_t, const dds_publication_matched_status_t, void* with) { wake(with); });
+      [](dds_entity_t, const dds_publication_matched_status_t, void* context) { wake(context); });
   topic_ = entity(dds_create_topic(participant, what_.type->descriptor,
                                    dds_name(what_.name).c_str(), nullptr, nullptr));
   writer_ = entity(dds_create_writer(participant, topic_.get(), quality.get(), listener.get()));
