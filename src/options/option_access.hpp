@@ -20,7 +20,7 @@ inline constexpr std::uint8_t is_string = 4;
 /// Of an option of opening; `number` is its value in the unit of its row, null if that has no limits.
 struct option_access {
   bool (*differs)(const lidar_options& a, const lidar_options& b);
-  void (*copy)(lidar_options& to, const lidar_options& from);
+  void (*copy)(lidar_options& changed, const lidar_options& source);
   /// `value` has the type of the row, and is in its range. Why not, or empty.
   std::string (*set)(lidar_options& into, const parameter_value& value);
   std::int64_t (*number)(const lidar_options& of);

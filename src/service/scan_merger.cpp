@@ -22,8 +22,8 @@ std::optional<merged_scan> scan_merger::add(std::size_t index, scan_shaper& shap
                                             std::int64_t first_ns, std::int64_t duration_ns,
                                             bool wants_kept, const path_until& path) {
   part& here = parts_[index];
-  const auto copy = [](std::vector<point>& to, std::span<const point> from) {
-    to.assign(from.begin(), from.end());
+  const auto copy = [](std::vector<point>& kept, std::span<const point> points) {
+    kept.assign(points.begin(), points.end());
   };
   const scan for_grid = shaper.for_grid();
   copy(here.for_grid, for_grid.points);

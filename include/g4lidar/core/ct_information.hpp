@@ -264,11 +264,11 @@ class ct_information_reader {
     last_ = found;
     return true;
   }
-  /// Eight digits from place `from` on.
-  static constexpr void write_digits(unsigned number, std::array<char, 16>& to,
-                                     std::size_t from) noexcept {
-    for (std::size_t i = from + 8; i-- > from; number /= 10) {
-      to[i] = static_cast<char>('0' + number % 10);
+  /// Eight digits, beginning at place `first`.
+  static constexpr void write_digits(unsigned number, std::array<char, 16>& digits,
+                                     std::size_t first) noexcept {
+    for (std::size_t i = first + 8; i-- > first; number /= 10) {
+      digits[i] = static_cast<char>('0' + number % 10);
     }
   }
 

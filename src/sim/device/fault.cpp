@@ -140,18 +140,18 @@ std::string_view cut_before(std::string_view& rest, char mark, bool& found) noex
 }
 
 // "[@BEGIN[+DURATION]]"
-std::optional<fault_error> read_when(std::string_view when, fault& into) {
+std::optional<fault_error> read_when(std::string_view times, fault& read) {
   constexpr std::string_view is_no_time =
       "is no time: 5s, 1.5ms, 200us, 30ns or 2min, at most 11 days";
   bool has_duration = false;
-  const std::string_view begin = cut_before(when, '+', has_duration);
+  const std::string_view begin = cut_before(times, '+', has_duration);
   const std::optional<std::int64_t> begin_ns = read_time_ns(begin);
   if (!begin_ns) return wrong(begin, is_no_time);
-  into.begin_ns = *begin_ns;
+  read.begin_ns = *begin_ns;
   if (!has_duration) return std::nullopt;
-  const std::optional<std::int64_t> duration_ns = read_time_ns(when);
-  if (!duration_ns) return wrong(when, is_no_time);
-  into.duration_ns = *duration_ns;
+  const std::optional<std::int64_t> duration_ns = read_time_ns(times);
+  if (!duration_ns) return wrong(times, is_no_time);
+  read.duration_ns = *duration_ns;
   return std::nullopt;
 }
 
