@@ -5,11 +5,13 @@
 #include <cstdint>
 #include <fstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include "core/time_limit.hpp"
+#include "g4lidar/background_reader.hpp"
 #include "g4lidar/discovery.hpp"
 #include "g4lidar/lidar.hpp"
 #include "g4lidar/motion/odometry_feed.hpp"
@@ -181,6 +183,15 @@ TEST(ExtremeLidar, RawBytes) {
       use(hook->events()->recorded_ns(time_ns));
     }
   }
+}
+
+TEST(ExtremeLidar, TimeoutsOfAReader) {
+  auto opened = lidar::open("sim:");
+  ASSERT_TRUE(opened) << opened.error().message();
+  auto reader = background_reader::start(std::move(*opened));
+  ASSERT_TRUE(reader) << reader.error().message();
+  use(reader->next_scan(lidar::milliseconds::min()).has_value());
+  EXPECT_TRUE(reader->next_scan(lidar::milliseconds::max()));
 }
 
 TEST(ExtremeLidar, Timeouts) {

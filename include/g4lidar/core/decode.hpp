@@ -138,7 +138,9 @@ struct first_level_angles {
   result.sample_count = static_cast<std::uint16_t>(packet.sample_count());
   result.first_angle_64ths = static_cast<std::uint16_t>(packet.first_angle_64ths());
   result.span_64ths = static_cast<std::int16_t>(packet.span_64ths());
-  result.reported_frequency_chz = static_cast<std::uint16_t>(packet.reported_frequency_chz());
+  if (packet.is_zero()) {  // once a revolution
+    result.reported_frequency_chz = static_cast<std::uint16_t>(packet.reported_frequency_chz());
+  }
   result.starts_revolution = packet.is_zero();
   result.suspect = packet.is_suspect();
   return result;
