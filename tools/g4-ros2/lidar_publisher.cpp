@@ -46,25 +46,21 @@ lidar_publisher::lidar_publisher(dds::bus& bus, const ros2_options& options,
   if (options.merges && options.order == scan_order::time) {
     throw bad_value("--merge cannot be used with --order time: a merged scan has no order of time");
   }
-  service_options shared = service_options_of(options.common);
-  shared.merges = options.merges;
-  shared.restamps = true;  // nobody is to deskew the points of a message again
-  shared.gives_points =
-      is_played_ || kind_of_source(lidars.front().source) == source_kind::simulated;
-  shared.is_standby = options.is_standby;
+  service_options all = service_options_of(options.common);
+  all.merges = options.merges;
+  all.restamps = true;  // nobody is to deskew the points of a message again
+  all.gives_points = is_played_ || kind_of_source(lidars.front().source) == source_kind::simulated;
+  all.is_standby = options.is_standby;
   if (options.common.deskew == deskewing::by_path) {
-    shared.other_odometry_place = where_odometry_is(options, name_space_);
-    shared.other_odometry = [this](odometry_path& into, const scan& /*whole*/,
-                                   std::int64_t ahead_ns) {
+    all.other_odometry_place = where_odometry_is(options, name_space_);
+    all.other_odometry = [this](odometry_path& into, const scan& /*whole*/, std::int64_t ahead_ns) {
       if (driven_) driven_->take(into, ahead_ns);
     };
   }
   std::vector<service_lidar> read;
-  read.reserve(lidars.size());
   for (std::size_t i = 0; i < lidars.size(); ++i)
     read.push_back(lidar_of(options, options_of(i), options.merges ? lidars[i].name : ""));
-  service_ =
-      make_service(std::move(read), std::move(shared), {{this, g4lidar::delivery::in_reader}});
+  service_ = make_service(std::move(read), std::move(all), {{this, g4lidar::delivery::in_reader}});
   if (const auto& mount = lidars.front().mount; mount && !options.merges) {
     place_ = publisher_of(bus, options.name_space, options.topics.tf_static,
                           {.type = &dds::tf_message, .depth = 1, .is_for_late = true});

@@ -61,24 +61,23 @@ void client_registry::disconnect(client* gone) {
   clients_.remove_if([gone](const client& each) { return &each == gone; });
 }
 
-bool client_registry::receive(client& sender, std::string_view text) {
-  return sender.kind == client_kind::page ? receive_page(sender, text)
-                                          : receive_foxglove(sender, text);
+bool client_registry::receive(client& peer, std::string_view text) {
+  return peer.kind == client_kind::page ? receive_page(peer, text) : receive_foxglove(peer, text);
 }
 
-bool client_registry::receive_page(client& sender, std::string_view text) {
+bool client_registry::receive_page(client& peer, std::string_view text) {
   const auto request = parse_page_request(text);
   if (!request) return false;
   if (const auto* bad = std::get_if<bad_request>(&*request)) {
-    answer(sender.id, bad->of, bad->message);
+    answer(peer.id, bad->of, bad->message);
   } else if (const auto* wanted = std::get_if<set_request>(&*request)) {
     if (!allows_set_) {
-      answer(sender.id, "set", "the settings are read-only: start g4-serve with --allow-set");
+      answer(peer.id, "set", "the settings are read-only: start g4-serve with --allow-set");
     } else {
-      take_slow(sender, "set", [&](auto done) { actions_.set(*wanted, std::move(done)); });
+      take_slow(peer, "set", [&](auto done) { actions_.set(*wanted, std::move(done)); });
     }
   } else if (const auto* recording = std::get_if<record_request>(&*request)) {
-    take_slow(sender, "record", [&](auto done) { actions_.record(*recording, std::move(done)); });
+    take_slow(peer, "record", [&](auto done) { actions_.record(*recording, std::move(done)); });
   } else {
     actions_.play(std::get<play_request>(*request));
   }
@@ -86,16 +85,16 @@ bool client_registry::receive_page(client& sender, std::string_view text) {
 }
 
 void client_registry::take_slow(
-    client& sender, const std::string& op,
+    client& peer, const std::string& op,
     const std::function<void(std::function<void(const std::string&)>)>& act) {
   {
     const std::lock_guard lock(mutex_);
-    if (std::exchange(sender.is_waiting, true)) {
-      sender.waiting.add(text_of(error_text(op, "the request before it is not done yet")));
+    if (std::exchange(peer.is_waiting, true)) {
+      peer.waiting.add(text_of(error_text(op, "the request before it is not done yet")));
       return;
     }
   }
-  act([this, op, id = sender.id](const std::string& error) {
+  act([this, op, id = peer.id](const std::string& error) {
     {
       const std::lock_guard lock(mutex_);
       const auto found = std::ranges::find(clients_, id, &client::id);
@@ -105,21 +104,21 @@ void client_registry::take_slow(
   });
 }
 
-bool client_registry::receive_foxglove(client& sender, std::string_view text) {
+bool client_registry::receive_foxglove(client& peer, std::string_view text) {
   const auto request = parse_foxglove_request(text);
   if (!request) return false;
   const std::lock_guard lock(mutex_);
-  const auto warn = [&sender](const std::string& message) {
-    if (!message.empty()) sender.waiting.add(text_of(foxglove_status_text(1, message)));
+  const auto warn = [&peer](const std::string& message) {
+    if (!message.empty()) peer.waiting.add(text_of(foxglove_status_text(1, message)));
   };
   if (const auto* wanted = std::get_if<subscribe_request>(&*request)) {
-    for (const auto& entry : wanted->entries) warn(subscribe(sender, entry));
+    for (const auto& entry : wanted->entries) warn(subscribe(peer, entry));
   } else if (const auto* unwanted = std::get_if<unsubscribe_request>(&*request)) {
     for (std::size_t i = 0; i < channel_count; ++i) {
-      auto& subscription = sender.subscriptions[i];
+      auto& subscription = peer.subscriptions[i];
       if (!subscription || std::ranges::count(unwanted->ids, *subscription) == 0) continue;
       subscription.reset();
-      sender.waiting.clear(i);
+      peer.waiting.clear(i);
     }
   } else {
     warn(fmt::format("this server does not know '{}'", std::get<other_request>(*request).op));
@@ -127,13 +126,13 @@ bool client_registry::receive_foxglove(client& sender, std::string_view text) {
   return true;
 }
 
-std::string client_registry::subscribe(client& sender, const subscribe_request::entry& wanted) {
+std::string client_registry::subscribe(client& peer, const subscribe_request::entry& wanted) {
   const auto target = channel_of(wanted.channel_id);
   if (!target) return fmt::format("there is no channel {}", wanted.channel_id);
-  if (std::ranges::count(sender.subscriptions, wanted.id) > 0) {
+  if (std::ranges::count(peer.subscriptions, wanted.id) > 0) {
     return fmt::format("the subscription {} is there already", wanted.id);
   }
-  auto& subscription = sender.subscriptions[static_cast<std::size_t>(*target)];
+  auto& subscription = peer.subscriptions[static_cast<std::size_t>(*target)];
   if (subscription) return fmt::format("the channel {} is subscribed already", wanted.channel_id);
   subscription = wanted.id;
   return {};

@@ -52,7 +52,7 @@ class client_registry {
   [[nodiscard]] client* connect(client_kind kind, void* socket);
   void disconnect(client* gone);
   /// Handles a text of a client. False if it violates the protocol: then close the connection.
-  [[nodiscard]] bool receive(client& sender, std::string_view text);
+  [[nodiscard]] bool receive(client& peer, std::string_view text);
   /// The next message for it; nothing if none waits.
   [[nodiscard]] std::optional<outgoing> take(client& receiver);
   [[nodiscard]] bool has_more(const client& receiver) const;
@@ -90,13 +90,12 @@ class client_registry {
   void to_pages(std::size_t slot, bool is_text, const shared_bytes& payload);
   void answer(std::uint64_t id, std::string_view op, const std::string& message);
   /// Calls `act` unless the last such request of the client is not done yet.
-  void take_slow(client& sender, const std::string& op,
+  void take_slow(client& peer, const std::string& op,
                  const std::function<void(std::function<void(const std::string&)>)>& act);
-  [[nodiscard]] bool receive_page(client& sender, std::string_view text);
-  [[nodiscard]] bool receive_foxglove(client& sender, std::string_view text);
+  [[nodiscard]] bool receive_page(client& peer, std::string_view text);
+  [[nodiscard]] bool receive_foxglove(client& peer, std::string_view text);
   /// Returns the error; empty if there is none.
-  [[nodiscard]] static std::string subscribe(client& sender,
-                                             const subscribe_request::entry& wanted);
+  [[nodiscard]] static std::string subscribe(client& peer, const subscribe_request::entry& wanted);
 
   const bool allows_set_;
   const lidar_actions actions_;

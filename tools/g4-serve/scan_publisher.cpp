@@ -74,14 +74,14 @@ scan_publisher::scan_publisher(const serve_options& options,
     served_lidar& made = lidars_.emplace_back(options, each, lidars.size());
     served.push_back(made.for_service());
   }
-  service_options shared = service_options_of(options.common);
-  shared.merges = options.merges;
-  shared.follows_motion = true;
-  shared.restamps = true;  // nobody is to deskew the points of a message again
-  shared.reads_settings = true;
+  service_options all = service_options_of(options.common);
+  all.merges = options.merges;
+  all.follows_motion = true;
+  all.restamps = true;  // nobody is to deskew the points of a message again
+  all.reads_settings = true;
   std::vector<service_output> outputs{{this, delivery::in_reader}};
   if (other != nullptr) outputs.push_back({other, delivery::in_reader});
-  service_ = make_service(std::move(served), std::move(shared), outputs);
+  service_ = make_service(std::move(served), std::move(all), outputs);
 }
 
 void scan_publisher::start() { value_of(service_->start()); }
