@@ -11,7 +11,8 @@ namespace {
 /// The end of a wait after which the progress is asked.
 std::int64_t next_ns(progress now, std::int64_t now_ns, std::int64_t deadline_ns) noexcept {
   constexpr std::chrono::nanoseconds interval = std::chrono::milliseconds(20);
-  return now == progress::done ? deadline_ns : std::min(deadline_ns, now_ns + interval.count());
+  return now == progress::done ? deadline_ns
+                               : std::min<std::int64_t>(deadline_ns, now_ns + interval.count());
 }
 
 }  // namespace

@@ -7,11 +7,18 @@
 #include <cerrno>
 #include <cstring>
 #include <string>
+#include <system_error>
 #include <utility>
 
 #include "core/enumerators.hpp"
 #include "one_of.hpp"
 #include "printable_text.hpp"
+
+// Of glibc 2.32 and later; thread-safe and independent of the locale, unlike strerror.
+extern "C" {
+[[gnu::weak]] const char* strerrorname_np(int) noexcept;
+[[gnu::weak]] const char* strerrordesc_np(int) noexcept;
+}
 
 namespace g4lidar {
 namespace {
@@ -255,21 +262,24 @@ bool error::may_pass() const noexcept {
 std::string_view error::advice() const noexcept {
   if (errno_ == EMFILE)
     return "Too many files are open: raise the limit, as with `ulimit -n 1024`.";
+  if (errno_ == ELIBACC)
+    return "Install libudev (on Debian the package libudev1), or name the port: without it no "
+           "ports are listed.";
   return words_of(code_, detail_).advice;
+}
+
+std::string errno_text(int number, errno_word name, errno_word description) {
+  const bool has_words = name != nullptr && description != nullptr;
+  if (has_words && name(number) == nullptr) return {};
+  return " (" + (has_words ? name(number) : "errno " + std::to_string(number)) + ", " +
+         (has_words ? description(number) : std::generic_category().message(number)) + ")";
 }
 
 std::string error::message() const {
   std::string text(name_of(doing_));
   if (size_ > 0) text.append(" ").append(subject());
   text.append(": ").append(words_of(code_, detail_).cause);
-  if (errno_ != 0) {
-    // Of glibc; thread-safe and independent of the locale, unlike strerror.
-    const char* name = strerrorname_np(errno_);
-    const char* description = strerrordesc_np(errno_);
-    if (name != nullptr && description != nullptr) {
-      text.append(" (").append(name).append(", ").append(description).append(")");
-    }
-  }
+  if (errno_ != 0) text += errno_text(errno_, &strerrorname_np, &strerrordesc_np);
   return text.append(". ").append(advice());
 }
 

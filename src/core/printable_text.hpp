@@ -5,9 +5,15 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <string_view>
 
 namespace g4lidar {
+
+using errno_word = const char* (*)(int);
+/// " (ENOENT, No such file or directory)" with glibc's functions, empty for a number that they do not know; without
+/// them, as before glibc 2.32, " (errno 2, No such file or directory)".
+[[nodiscard]] std::string errno_text(int number, errno_word name, errno_word description);
 
 /// The length in bytes of the first character of `text`, which is not empty; 0 if it is not valid
 /// UTF-8. (RFC 3629, section 4)

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The serial ports of this computer as libudev describes them: now, and when they change.
+#include <dlfcn.h>
 #include <libudev.h>
 #include <unistd.h>
 
@@ -21,6 +22,46 @@
 #include "transport/port_holder.hpp"
 
 namespace g4lidar {
+namespace {
+
+// libudev is loaded when ports are first looked for, so that all else works where it is not installed.
+#define G4LIDAR_UDEV_FUNCTIONS(each)                                                               \
+  each(udev_new) each(udev_unref) each(udev_device_get_action) each(udev_device_get_devnode)       \
+      each(udev_device_get_driver) each(udev_device_get_parent) each(                              \
+          udev_device_get_parent_with_subsystem_devtype) each(udev_device_get_sysattr_value)       \
+          each(udev_device_get_sysname) each(udev_device_new_from_syspath) each(udev_device_unref) \
+              each(udev_enumerate_add_match_subsystem) each(udev_enumerate_get_list_entry)         \
+                  each(udev_enumerate_new) each(udev_enumerate_scan_devices)                       \
+                      each(udev_enumerate_unref) each(udev_list_entry_get_name)                    \
+                          each(udev_list_entry_get_next) each(udev_monitor_enable_receiving)       \
+                              each(udev_monitor_filter_add_match_subsystem_devtype)                \
+                                  each(udev_monitor_get_fd) each(udev_monitor_new_from_netlink)    \
+                                      each(udev_monitor_receive_device) each(udev_monitor_unref)
+#define G4LIDAR_DECLARE(name) decltype(&::name) name = nullptr;
+G4LIDAR_UDEV_FUNCTIONS(G4LIDAR_DECLARE)
+
+/// False if there is no libudev. A program that has these functions itself, such as a test, keeps its own.
+bool has_udev() noexcept {
+  static const bool is_loaded = [] {
+    ::dlopen("libudev.so.1", RTLD_NOW | RTLD_GLOBAL);
+    bool has_all = true;
+#define G4LIDAR_FIND(name)                                                                        \
+  has_all = (name = reinterpret_cast<decltype(name)>(::dlsym(RTLD_DEFAULT, #name))) != nullptr && \
+            has_all;
+    G4LIDAR_UDEV_FUNCTIONS(G4LIDAR_FIND)
+    return has_all;
+  }();
+  return is_loaded;
+}
+#undef G4LIDAR_UDEV_FUNCTIONS
+#undef G4LIDAR_DECLARE
+#undef G4LIDAR_FIND
+
+tl::unexpected<error> no_udev() noexcept {
+  return failure(task::finding, problem::system, "ports with libudev.so.1", ELIBACC);
+}
+
+}  // namespace
 
 struct release_udev {
   void operator()(udev* context) const noexcept { udev_unref(context); }
@@ -138,6 +179,7 @@ bool is_g4_bridge(const port_info& port) noexcept {
 }
 
 result<std::vector<port_info>> list_ports() {
+  if (!has_udev()) return no_udev();
   const udev_owner<udev> context(udev_new());
   if (!context) return failure(task::finding, problem::system, "udev", errno);
   const udev_owner<udev_enumerate> list(udev_enumerate_new(context.get()));
@@ -203,6 +245,7 @@ std::optional<port_event> port_monitor::state::went(const std::string& path) {
 }
 
 result<port_monitor> port_monitor::open() {
+  if (!has_udev()) return no_udev();
   auto made = std::make_unique<state>();
   made->context.reset(udev_new());
   if (!made->context) return failure(task::finding, problem::system, "udev", errno);

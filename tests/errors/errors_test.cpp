@@ -10,6 +10,7 @@
 #include <string>
 #include <type_traits>
 
+#include "core/printable_text.hpp"
 #include "scenario.hpp"
 
 namespace g4lidar::test {
@@ -159,6 +160,16 @@ TEST(Text, OfAWordForAModel_IsShort) {
 TEST(Text, OfTooManyFiles_NamesTheLimit) {
   const error full(task::opening, problem::system, "/dev/ttyUSB0", EMFILE);
   EXPECT_TRUE(has(full.message(), "ulimit -n")) << full.message();
+}
+
+TEST(Text, OfAnErrorNumber_HasItsName_WhereTheCLibraryKnowsIt) {
+  const errno_word name = [](int number) { return number == 2 ? "ENOENT" : nullptr; };
+  const errno_word description = [](int number) {
+    return number == 2 ? "No such file or directory" : nullptr;
+  };
+  EXPECT_EQ(errno_text(2, name, description), " (ENOENT, No such file or directory)");
+  EXPECT_EQ(errno_text(3, name, description), "");
+  EXPECT_EQ(errno_text(2, nullptr, nullptr), " (errno 2, No such file or directory)");
 }
 
 /// A message of the C interface has 255 characters for the cause and for the advice.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The part of libudev that listing ports needs. The linker prefers these functions to the
-// library's.
+// The part of libudev that listing ports needs. This program exports these functions, so that dlsym() finds them before
+// those of the library.
 #include "fake_udev.hpp"
 
 #include <libudev.h>
