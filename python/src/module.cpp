@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: MIT
 // The Python module g4lidar._g4lidar; g4lidar/__init__.py makes its names public.
 #include <nanobind/nanobind.h>
-#include <nanobind/stl/string.h>
 
-#include <string>
-
-#include "g4lidar/version.hpp"
 #include "live_lidar.hpp"
 #include "simulator.hpp"
+
+extern const char* const build_version;
 
 namespace g4lidar::python {
 
@@ -34,10 +32,7 @@ NB_MODULE(_g4lidar, module) {
   nanobind::set_leak_warnings(
       false);  // of objects that exist at the end of a program: nothing is printed
   module.doc() = "The compiled part of g4lidar.";
-  const auto& version = g4lidar::header_version;
-  module.attr("_version") = std::to_string(version.major_number) + '.' +
-                            std::to_string(version.minor_number) + '.' +
-                            std::to_string(version.patch_number);
+  module.attr("_version") = build_version;
   bind_arrays(module);
   bind_errors(module);
   bind_scan(module);

@@ -299,9 +299,13 @@ TEST(Help, NamesEveryColumn) {
   }
 }
 
-TEST(Version, IsThatOfTheLibrary) {
-  const std::string expected = "g4-dump " G4LIDAR_VERSION "\n";
-  EXPECT_EQ(run({"--version"}).out, expected);
+TEST(Version, IsThatOfTheBuild) {
+  const std::string expected = run({"--version"}).out;
+  ASSERT_THAT(expected,
+              testing::MatchesRegex("g4-dump [0-9.]+(~dev[0-9]+[+]g[0-9a-f]+ [(][-0-9]+[)])?\n"));
+  const std::string number = expected.substr(8, expected.size() - 9);
+  EXPECT_THAT(cli::read_file(G4LIDAR_VERSION_SOURCE),
+              testing::HasSubstr(" = \"" + number + "\";\n"));
   EXPECT_EQ(run({"decode", "--version"}).out, expected);
   EXPECT_EQ(run({"--version"}).code, 0);
 }

@@ -16,13 +16,13 @@
 
 #include "cli/exit_code.hpp"
 #include "cli/logger.hpp"
-#include "g4lidar/version.hpp"
 #include "io/interrupt.hpp"
 #include "io/recorder.hpp"
 #include "io/source_word.hpp"
 #include "verbs/dump_verbs.hpp"
 
 namespace g4_tool {
+extern const char build_version[];  // cmake/version.sh
 namespace {
 
 constexpr auto recorded_time = std::chrono::seconds(10);
@@ -51,8 +51,7 @@ std::string line_after(const char* file, std::string_view name) {
 }
 
 std::string versions() {
-  return fmt::format("g4-dump      {}.{}.{}\ncompiler     {}\n", G4LIDAR_VERSION_MAJOR,
-                     G4LIDAR_VERSION_MINOR, G4LIDAR_VERSION_PATCH, __VERSION__);
+  return fmt::format("g4-dump      {}\ncompiler     {}\n", build_version, __VERSION__);
 }
 
 std::string machine() {

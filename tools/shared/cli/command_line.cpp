@@ -17,13 +17,13 @@
 #include "common_options.hpp"
 #include "config_file.hpp"
 #include "exit_code.hpp"
-#include "g4lidar/version.hpp"
 #include "io/output.hpp"
 #include "logger.hpp"
 #include "suggestion.hpp"
 #include "verbs.hpp"
 
 namespace g4_tool {
+extern const char build_version[];  // cmake/version.sh
 namespace {
 
 /// A name for CLI11, which refuses `=` in names from version 2.4 on.
@@ -253,9 +253,7 @@ std::string app_footer(const program& ours) {
 
 /// What the help has besides the verbs, and the options of all of them.
 void describe(CLI::App& app, const program& ours, const std::vector<verb>& verbs) {
-  app.set_version_flag("--version",
-                       fmt::format("{} {}.{}.{}", ours.name, G4LIDAR_VERSION_MAJOR,
-                                   G4LIDAR_VERSION_MINOR, G4LIDAR_VERSION_PATCH),
+  app.set_version_flag("--version", fmt::format("{} {}", ours.name, build_version),
                        "Print the version and exit");
   app.fallthrough();
   app.require_subcommand(0, 1);  // a further one is an argument
