@@ -65,6 +65,15 @@ packages_sysroot=(
   zlib1g-dev
 )
 
+# What is linked into the portable archives, and how they are made and tried: scripts/release, scripts/ci/portable.
+# shellcheck disable=SC2034
+packages_portable=(
+  libudev-dev libexpected-dev libcli11-dev libfmt-dev nlohmann-json3-dev libzstd-dev zlib1g-dev libncurses-dev
+  libboost1.81-dev
+)
+# shellcheck disable=SC2034
+packages_release=(binutils cmake git ninja-build python3-venv)
+
 # Everything that .ci/run needs.
 # shellcheck disable=SC2034
 packages_ci=(

@@ -1,0 +1,137 @@
+# SPDX-License-Identifier: MIT
+# shellcheck shell=bash
+# Makes the archives of programs that run on every Linux with glibc 2.28. The compiler is zig, which is a package of
+# Python and has the C libraries and libc++ in it. Sourced by scripts/release; needs bash.
+
+zig_version=0.17.1
+work=$PWD/build/portable
+glibc=2.28
+
+# make_compiler <processor> <directory>: compilers for that processor there, with the static libraries of its sysroot.
+make_compiler() {
+  local target=$1-linux-gnu python=$work/zig/bin/python tool
+  if [[ ! -x $python || $("$python" -m ziglang version 2>/dev/null) != "$zig_version" ]]; then
+    rm -rf "$work/zig"
+    run_quietly "Making a place for zig" python3 -m venv "$work/zig"
+    run_quietly "Fetching zig $zig_version" \
+      "$work/zig/bin/pip" install --quiet --disable-pip-version-check "ziglang==$zig_version"
+  fi
+  mkdir -p "$2"
+  # ccache recognises clang by its name.
+  for tool in clang:cc clang++:c++ ar:ar ranlib:ranlib; do
+    {
+      echo '#!/bin/sh'
+      case $tool in
+        clang*) echo "exec '$python' -m ziglang ${tool#*:} -target $target.$glibc \"\$@\"" ;;
+        *) echo "exec '$python' -m ziglang ${tool#*:} \"\$@\"" ;;
+      esac
+    } >"$2/${tool%:*}"
+    chmod +x "$2/${tool%:*}"
+  done
+}
+
+# unpack_source <archive>: into $work/source; unchanged files keep their times.
+unpack_source() {
+  rm -rf "$work/source.new"
+  mkdir -p "$work/source.new" "$work/source"
+  tar --extract --gzip --file "$1" --directory "$work/source.new" --strip-components 1
+  mv "$work/source/build" "$work/source.new/build" 2>/dev/null || true
+  rm -rf "$work/source"
+  mv "$work/source.new" "$work/source"
+}
+
+# build_portable <processor>: the programs, in $work/<processor>/root.
+build_portable() {
+  local processor=$1 build=$work/$1 inputs=$PWD/build/sysroot/portable-$1 include=() cross=()
+  run_quietly "Getting the libraries for $processor" scripts/sysroot "portable-$processor"
+  make_compiler "$processor" "$build/compiler"
+  include=(-isystem "$inputs/usr/include/$processor-linux-gnu" -isystem "$inputs/usr/include")
+  if [[ $processor != "$(uname -m)" ]]; then
+    cross=(-DCMAKE_SYSTEM_NAME=Linux "-DCMAKE_SYSTEM_PROCESSOR=$processor")
+  fi
+  (
+    export CCACHE_COMPILERCHECK="string:zig $zig_version $processor $glibc" CCACHE_BASEDIR=$PWD
+    cd "$work/source" || exit
+    configure "$build/build" "${cross[@]}" -DCMAKE_BUILD_TYPE=Release -DG4LIDAR_UNITE=ON -DG4LIDAR_DEVICE=ON \
+      -DG4LIDAR_BUILD_TOOLS=ON -DG4LIDAR_BUILD_SERVE=ON -DG4LIDAR_BUILD_ROS2=OFF -DG4LIDAR_BUILD_C=OFF \
+      -DG4LIDAR_BUILD_TESTS=OFF -DG4LIDAR_BUILD_FUZZ=OFF -DG4LIDAR_BUILD_EXAMPLES=OFF -DG4LIDAR_INSTALL=ON \
+      -DG4LIDAR_INSTALL_UDEV_RULE=ON "-DCMAKE_C_COMPILER=$build/compiler/clang" \
+      "-DCMAKE_CXX_COMPILER=$build/compiler/clang++" "-DCMAKE_AR=$build/compiler/ar" \
+      "-DCMAKE_RANLIB=$build/compiler/ranlib" "-DCMAKE_CXX_FLAGS=${include[*]} -ffile-prefix-map=$PWD=. -s" \
+      "-DCMAKE_FIND_ROOT_PATH=$inputs" -DCMAKE_FIND_ROOT_PATH_MODE_INCLUDE=ONLY \
+      -DCMAKE_FIND_ROOT_PATH_MODE_LIBRARY=ONLY -DCMAKE_FIND_ROOT_PATH_MODE_PACKAGE=ONLY \
+      "-DCMAKE_LIBRARY_ARCHITECTURE=$processor-linux-gnu" "-Dfmt_DIR=$work/source/packaging/portable"
+    build "$build/build" g4-dump g4-serve
+  )
+  rm -rf "$build/root"
+  run_quietly "Installing them" cmake --install "$build/build" --prefix "$build/root"
+}
+
+# write_licences <processor> <directory>: the licences of what is linked into the programs.
+write_licences() {
+  local documents=build/sysroot/portable-$1/usr/share/doc zig package
+  zig=$(echo "$work"/zig/lib/python*/site-packages/ziglang)
+  mkdir -p "$2"
+  for package in libboost1.81-dev:boost libcli11-dev:cli11 libexpected-dev:expected libfmt-dev:fmt libtinfo6:ncurses \
+    nlohmann-json3-dev:nlohmann-json zlib1g-dev:zlib libzstd-dev:zstd; do
+    cp --dereference "$documents/${package%:*}/copyright" "$2/${package#*:}.txt"
+  done
+  for package in libcxx libcxxabi libunwind; do cp "$zig/lib/$package/LICENSE.TXT" "$2/$package.txt"; done
+  cp "$zig/LICENSE" "$2/zig.txt"
+  cp "$work/source/LICENSE" "$2/g4lidar.txt"
+}
+
+# check_programs <file>...: fails if one needs what glibc 2.28 does not have: a newer version of a name, or a name without
+# a version, which may be missing when it is called.
+check_programs() {
+  local program
+  for program in "$@"; do
+    if ! readelf --wide --dyn-syms "$program" | awk -v newest="$glibc" '
+        $7 == "UND" && $8 != "" && $5 != "WEAK" && $8 !~ /@/ { print "without a version: " $8; bad = 1 }
+        $7 == "UND" && match($8, /@GLIBC_[0-9.]+/) {
+          split(substr($8, RSTART + 7), version, "."); split(newest, most, ".")
+          if ($5 != "WEAK" && (version[1] > most[1] || version[2] + 0 > most[2] + 0)) { print "too new: " $8; bad = 1 }
+          ++found
+        }
+        END { exit bad || found == 0 }'; then
+      echo "$program does not run with glibc $glibc" >&2
+      return 1
+    fi
+  done
+}
+
+# check_no_addresses <directory>: fails if a file in it has a path or the name of this machine.
+check_no_addresses() {
+  local name patterns=(-e "$PWD" -e "$work")
+  name=$(uname -n)
+  if ((${#name} > 5)) && [[ $name != localhost ]]; then patterns+=(-e "$name"); fi
+  if grep --recursive --files-with-matches --text --fixed-strings "${patterns[@]}" "$1"; then
+    echo "These files have a path or the name of this machine in them" >&2
+    return 1
+  fi
+}
+
+# make_portable <processor> <version> <directory>: the archive, in that directory. Man pages do not depend on the
+# processor: the programs of this one print them.
+make_portable() {
+  local processor=$1 name=g4lidar-$2-linux-$1 root=$work/$1/root to=$work/$1/archive/ this own
+  this=$(uname -m)
+  own=$work/$this/root
+  if [[ $processor != "$this" && ! -e $own/share/man ]]; then build_portable "$this"; fi
+  build_portable "$processor"
+  rm -rf "$to"
+  mkdir -p "$to/$name/share"
+  to+=$name
+  cp -r "$root/bin" "$to"
+  mkdir -p "$to/lib"
+  cp -r "$root/lib/udev" "$to/lib"
+  cp -r "$own/share/man" "$root"/share/{bash-completion,fish,zsh} "$to/share"
+  cp "$work"/source/packaging/portable/{install.sh,README.md} "$work/source/LICENSE" "$to"
+  write_licences "$processor" "$to/licenses"
+  check_programs "$to"/bin/*
+  check_no_addresses "$to"
+  (cd "$to" && find . -type f -printf '%P\n' | sort | xargs sha256sum >"$work/sums")
+  mv "$work/sums" "$to/SHA256SUMS"
+  tar --create --directory "$work/$processor/archive" --sort=name --owner=0 --group=0 --numeric-owner \
+    --mode=u=rwX,go=rX --mtime="@$SOURCE_DATE_EPOCH" "$name" | gzip -n9 >"$3/$name.tar.gz"
+}
