@@ -45,7 +45,7 @@ def last_scan(case: dict[str, Any], make: Callable[..., g4lidar.Simulator]) -> t
     source = case["source"].replace("$", str(DIRECTORY))
     keywords = {KEYWORDS.get(name, name): value for name, value in options.items() if name not in FILTERS}
     if keywords.get("direction") == "ccw":
-        keywords["direction"] = "counter-clockwise"
+        keywords["direction"] = "counter_clockwise"
     if "stall_time" in keywords:
         keywords["stall_time"] /= 1000
     device: Any = source

@@ -87,37 +87,6 @@ def test_the_model_of_an_open_lidar_and_what_sends_the_same() -> None:
 
 
 @pytest.mark.parametrize(
-    ("model", "name", "least", "most"),
-    [("g4", "G4", 5, 12), ("t-mini-pro", "T-mini Pro", 6, 12), ("tg30", "TG30", 3, 16)],
-)
-def test_the_scan_frequency_has_the_limits_of_the_model(
-    g4_simulator: Make, model: str, name: str, least: int, most: int
-) -> None:
-    with g4lidar.open(g4_simulator(model=model), frequency_hz=most) as lidar:
-        lidar.start()
-        lidar.stop()
-        assert lidar.settings()["frequency_hz"] == pytest.approx(most, abs=0.05)
-        for hz in (least, least + 1, most - 0.5, most):
-            lidar.set(frequency_hz=hz)
-            assert lidar.settings()["frequency_hz"] == pytest.approx(hz, abs=0.05)
-        for hz in (least - 0.1, most + 0.1):
-            with pytest.raises(errors.BadSetting, match=rf"\({least} Hz to {most} Hz of a {name}\)"):
-                lidar.set(frequency_hz=hz)
-            with pytest.raises(errors.BadOption, match=rf"\({least} to {most} Hz of a {name}\), not {hz * 100:.0f}"):
-                g4lidar.open(g4_simulator(model=model), frequency_hz=hz)
-        assert lidar.settings()["frequency_hz"] == pytest.approx(most, abs=0.05)
-
-
-def test_a_sample_rate_of_another_model(g4_simulator: Make) -> None:
-    with g4lidar.open(g4_simulator(model="g6"), sample_rate_hz=16_000) as lidar:
-        lidar.start()
-        lidar.stop()
-        assert lidar.settings()["sample_rate_hz"] == 16_000
-        with pytest.raises(errors.BadSetting, match="8000, 16000 or 18000 of a G6"):
-            lidar.set(sample_rate_hz=9000)
-
-
-@pytest.mark.parametrize(
     ("options", "known"),
     [
         ({"model": "g4"}, {"frequency_hz", "sample_rate_hz", "direction", "idle"}),
@@ -195,26 +164,6 @@ def test_the_offset_of_zero(tmp_path: Path) -> None:
         g4lidar.decode(data, zero_angle=1.0)
     with pytest.raises(errors.BadOption):
         g4lidar.decode(data, model="tg15", zero_angle=361.0)
-
-
-def test_a_lidar_that_is_listened_to_gets_no_byte() -> None:
-    simulator = g4lidar.Simulator(model="t-mini-plus", faults=["scanning"])
-    with g4lidar.open(simulator, listen_only=True, leave_dtr=True) as lidar:
-        lidar.start()
-        for scan, _ in zip(lidar.scans(), range(3)):
-            assert len(scan) > 0
-        with pytest.raises(errors.NotSupported):
-            lidar.set(frequency_hz=8.0)
-        known = lidar.recognition
-    assert known["model"] == "t-mini-plus" and known["known_by"] == "user"
-    assert known["contradictions"] == ""
-
-
-def test_what_contradicts_the_model_is_reported() -> None:
-    with g4lidar.open("sim:?model=t-mini-plus&model_id=153") as lidar:
-        known = lidar.recognition
-    assert known["number"] == 153
-    assert "153, which no known model has" in str(known["contradictions"])
 
 
 @pytest.mark.parametrize("page", ["README.md", "docs/python.md"])

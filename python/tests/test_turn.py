@@ -93,18 +93,6 @@ def test_motion_has_the_turn_of_the_model(model: str, tmp_path: Path) -> None:
     assert np.allclose(xy[returns, 0], (x_m + 5 * ago)[returns], atol=1e-3)
 
 
-@pytest.mark.parametrize("model", ["x4", "g4"])
-def test_filters_have_the_turn_of_the_model(model: str, tmp_path: Path) -> None:
-    scan = scans_of(model, tmp_path)[-1]
-    kept = g4lidar.ScanShaper(field_of_view=(80, 100)).shape(scan.points, model=model).kept
-    assert len(kept) > 10
-    assert kept.tobytes() == g4lidar.ScanShaper(field_of_view=(80, 100)).shape(scan).kept.tobytes()
-    left = kept["range_mm"][kept["range_mm"] > 0]
-    assert np.median(left) == pytest.approx(2000, abs=50)
-    other = g4lidar.ScanShaper(field_of_view=(80, 100)).shape(scan.points).kept["range_mm"]
-    assert np.median(other[other > 0]) == pytest.approx(2000 if model == "g4" else 3000, abs=60)
-
-
 def test_marks_know_the_model_and_the_angle_between_samples(tmp_path: Path) -> None:
     points = np.zeros(60, g4lidar.POINT_DTYPE)
     points["angle_deg"] = np.arange(60) * 3.0

@@ -202,18 +202,6 @@ TEST(CLidar, InterruptsARunningScanOnlyIfAllowed) {
   EXPECT_NE(next_whole(it), nullptr);
 }
 
-TEST(CLidar, AppliesItsOptions) {
-  const simulator device = simulate();
-  g4lidar_options options = defaults();
-  options.frequency_chz = 1000;
-  options.sample_rate_hz = 4000;
-  const lidar it = start_on(device, &options);
-  const g4lidar_scan* scan = scan_at_speed(it);
-  ASSERT_NE(scan, nullptr);
-  EXPECT_NEAR(static_cast<double>(scan->point_count), 400.0, 20.0);
-  EXPECT_NEAR(scan->frequency_hz, 10.0F, 0.2F);
-}
-
 TEST(CLidar, ReportsAnUnplugAndReconnects) {
   const simulator device = simulate();
   g4lidar_options options = defaults();

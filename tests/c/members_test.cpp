@@ -2,7 +2,6 @@
 // Members of structures: each option has its effect, and each value is that of the simulated device.
 #include <cmath>
 #include <cstdlib>
-#include <cstring>
 #include <string>
 #include <vector>
 
@@ -65,16 +64,6 @@ TEST(CMembers, PiecesComeOnlyIfWished) {
   };
   EXPECT_EQ(first_flags(true) & G4LIDAR_START_MISSING, G4LIDAR_START_MISSING);
   EXPECT_EQ(first_flags(false), 0U);
-}
-
-TEST(CMembers, ImpossibleBackoffIsNamed) {
-  const simulator device = simulate();
-  g4lidar_options options = defaults();
-  options.longest_backoff_ms = 2000;
-  g4lidar_lidar* made = nullptr;
-  g4lidar_error why;
-  EXPECT_EQ(g4lidar_open_simulated(device.get(), &options, &made, &why), G4LIDAR_BAD_OPTION);
-  EXPECT_EQ(std::strncmp(why.subject, "longest_backoff", 15), 0) << why.subject;
 }
 
 TEST(CMembers, TruthOfARevolution) {

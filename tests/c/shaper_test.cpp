@@ -167,21 +167,6 @@ TEST(CShaper, ShapesTheScansOfItsModel) {
   EXPECT_EQ(g4lidar_shaper_create(&options, &none, nullptr), G4LIDAR_BAD_ARGUMENT);
 }
 
-TEST(CShaper, LeavesOutSingleReturns_OfAPieceOthersThanOfARevolution) {
-  const std::vector<g4lidar_point> points{at(10.0F, 2000.0F), at(180.0F, 4000.0F),
-                                          at(9.9F, 2000.0F)};
-  g4lidar_outlier_options limits;
-  g4lidar_outlier_options_init(&limits, sizeof limits);
-  limits.window = 1;
-  g4lidar_shaper_options options = shaper_defaults();
-  options.speckle = &limits;
-  const shaper made = make(options);
-  ASSERT_EQ(g4lidar_shaper_shape(made.get(), points.data(), 3, false, nullptr, 0), G4LIDAR_OK);
-  EXPECT_EQ(kept_by(made).size(), 2U);
-  ASSERT_EQ(g4lidar_shaper_shape(made.get(), points.data(), 3, true, nullptr, 0), G4LIDAR_OK);
-  EXPECT_EQ(kept_by(made).size(), 0U);
-}
-
 TEST(CShaper, LeavesOutReturnsBetweenSurfaces_AndFlagsThemForGrids) {
   // A wall 4 m away; one return in the air; later a return between 2 m and 4 m.
   std::vector<g4lidar_point> points;

@@ -62,6 +62,8 @@ struct settings {
 
   void take_flag(const std::string& name) {
     for (const auto& [each, member] : {std::pair{"listen_only", &opening.listen_only},
+                                       {"leave_dtr", &opening.leave_dtr},
+                                       {"reconnect", &opening.reconnect},
                                        {"probe_all_ports", &opening.probe_all_ports}})
       if (name == each) *member = true;
   }

@@ -2,7 +2,6 @@
 // g4-dump decode: whole scans, and the counts at the end.
 #include <gtest/gtest.h>
 
-#include <cstdint>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -33,60 +32,6 @@ TEST(Decode, ScansAsCsv) {
             "2,80222222,121,120,true,end_missing,59.50,7.1,\n");
   const outcome small = run({"decode", "--scans", "--valid"}, small_recording());
   EXPECT_TRUE(lines_of(small.out).at(2).starts_with("1,444444,3,3,true,data_lost+turn_short,"));
-}
-
-TEST(Decode, ScansAsText) {
-  const outcome done = run({"decode", "--scans", "--format", "text"}, two_and_a_half_turns());
-  EXPECT_EQ(
-      done.out,
-      "  scan  points  returns  turned_deg  reported_hz  measured_hz  state\n"
-      "     0     361      361      360.00          7.1        24.93  whole\n"
-      "     1     361      361      360.00          7.1        24.93  whole\n"
-      "     2     121      120       59.50          7.1            -  partial: end_missing\n");
-}
-
-void expect_turns_as_jsonl(const outcome& done) {
-  const std::vector<std::string> lines = lines_of(done.out);
-  ASSERT_EQ(lines.size(), 3U);
-  const json first = json::parse(lines[0]);
-  EXPECT_EQ(first.at("scan"), 0);
-  EXPECT_EQ(first.at("partial"), false);
-  EXPECT_EQ(first.at("why"), json::array());
-  EXPECT_EQ(first.at("points"), 361);
-  EXPECT_EQ(first.at("reported_hz"), 7.1);
-  EXPECT_NEAR(first.at("measured_hz").get<double>(), 9000.0 / 361.0, 1e-3);
-  for (const char* const column : {"angle_deg", "range_mm", "time_ns"}) {
-    EXPECT_EQ(first.at(column).size(), 361U) << column;
-  }
-  EXPECT_EQ(first.at("time_ns").at(360), 40'000'000);
-  const json last = json::parse(lines[2]);
-  EXPECT_EQ(last.at("partial"), true);
-  EXPECT_EQ(last.at("why"), json::array({"end_missing"}));
-  EXPECT_EQ(last.at("range_mm").at(0), 0.0);
-  EXPECT_TRUE(last.at("measured_hz").is_null());
-}
-
-TEST(Decode, ScansAsJsonl) {
-  const std::string turns = two_and_a_half_turns();
-  expect_turns_as_jsonl(run({"decode", "--scans", "--format", "jsonl"}, turns));
-  expect_turns_as_jsonl(run({"scan", "-", "--partial", "-f", "jsonl"}, turns));
-  const outcome valid =
-      run({"decode", "--scans", "--valid", "--format", "jsonl"}, two_and_a_half_turns());
-  const json last_valid = json::parse(lines_of(valid.out).at(2));
-  EXPECT_EQ(last_valid.at("points"), 120);
-  EXPECT_EQ(last_valid.at("angle_deg").size(), 120U);
-}
-
-TEST(Decode, StoppedMotor_FillsNoMemoryAndLosesNoPoint) {
-  std::string recording;
-  for (int i = 0; i < 1000; ++i)
-    recording += cli::packet(10, 10, std::vector<std::uint16_t>(40, 4000));
-  std::uint64_t points = 0;
-  const outcome done = run({"decode", "--scans", "--format", "jsonl"}, recording);
-  for (const std::string& line : lines_of(done.out)) {
-    points += json::parse(line).at("points").get<std::uint64_t>();
-  }
-  EXPECT_EQ(points, 40'000U);
 }
 
 TEST(Decode, StatsAsJson_OneObjectAndNothingElse) {

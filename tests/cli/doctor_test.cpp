@@ -83,14 +83,6 @@ TEST_F(Doctor, GoesThroughAllStages) {
   EXPECT_EQ(stages[9].at("evidence").at("set_hz"), 7.0);
 }
 
-TEST_F(Doctor, RecognisesTheModel) {
-  for (const char* const word : {"x4", "x4-pro", "t-mini-pro", "tg30"}) {
-    const outcome done = examine("sim:?model=" + std::string(word));
-    EXPECT_EQ(done.code, 0) << done.out << done.err;
-    EXPECT_EQ(stages_of(done).at(3).at("evidence").at("model"), word) << done.out;
-  }
-}
-
 TEST_F(Doctor, ReportsAnotherModelThanTheNamedOne) {
   const auto named = [](const std::string& source, const std::string& word) {
     return run({"doctor", "-d", "500ms", source, "--model", word});
@@ -104,13 +96,6 @@ TEST_F(Doctor, ReportsAnotherModelThanTheNamedOne) {
   EXPECT_THAT(one_way.out, HasSubstr("found: one_way_lidar\n"));
   EXPECT_THAT(one_way.out, HasSubstr("x4-pro"));
   EXPECT_EQ(run({"doctor", "sim:", "--model", "x44"}).code, 2);
-}
-
-TEST_F(Doctor, ReportsASecondPlugThatIsNotConnected) {
-  const outcome done = run({"doctor", "sim:?model=x4&motor_has_power=false"});
-  EXPECT_EQ(done.code, 8) << done.out;
-  EXPECT_THAT(done.out, HasSubstr("found: no_motor_power\n"));
-  EXPECT_THAT(done.out, HasSubstr("second plug"));
 }
 
 // A recording is examined without a device: what needs one is skipped.
@@ -158,12 +143,6 @@ TEST_F(Doctor, PrintsWhatIsWrongAndWhatToTry) {
   EXPECT_THAT(done.out, HasSubstr("health       FAIL health_error: "));
   EXPECT_THAT(done.out, HasSubstr("try: "));
   EXPECT_THAT(done.out, HasSubstr("found: health_error\n"));
-}
-
-TEST_F(Doctor, ReportsDamage) {
-  const outcome done = examine("sim:?fault=insert*0.01");
-  EXPECT_EQ(done.code, 8);
-  EXPECT_THAT(diagnoses_of(stages_of(done)), Contains("bytes_inserted")) << done.out;
 }
 
 TEST_F(Doctor, ReportsAnUnplug) {

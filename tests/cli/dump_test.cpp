@@ -7,58 +7,15 @@
 #include <string>
 #include <vector>
 
-#include "wanted_points.hpp"
+#include "expected_points.hpp"
+#include "program.hpp"
+#include "recording.hpp"
 
 namespace {
 
 using namespace cli;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
-
-TEST(Dump, FieldOfViewInTheVendorsFrame) {
-  for (const auto& [from, to] : std::vector<std::pair<double, double>>{{-90, 90},
-                                                                       {90, -90},
-                                                                       {0, 360},
-                                                                       {350, 10},
-                                                                       {10, 350},
-                                                                       {-10.5, 0},
-                                                                       {0, 0.5},
-                                                                       {359, 360}}) {
-    wanted_form wanted;
-    wanted.fov_from = from;
-    wanted.fov_to = to;
-    std::ostringstream option;
-    option << "--fov=" << from << ":" << to;
-    SCOPED_TRACE(option.str());
-    expect_filtered({option.str()}, false, wanted);
-    expect_filtered({option.str()}, true, wanted);
-  }
-}
-
-TEST(Dump, FieldOfViewWithASeparateWord) {
-  EXPECT_EQ(run({"dump", "-", "--fov", "-90:90", "-q"}, simulated()).out,
-            run({"dump", "-", "--fov=-90:90", "-q"}, simulated()).out);
-}
-
-TEST(Dump, IgnoredDirectionsAndRanges) {
-  wanted_form wanted;
-  wanted.ignores = true;
-  wanted.ignore_from = 170;
-  wanted.ignore_to = -170;
-  wanted.range_from_mm = 280;
-  wanted.range_to_mm = 16000;
-  for (const bool robot : {false, true}) {
-    expect_filtered({"--ignore", "170:-170", "--range", "0.28:16"}, robot, wanted);
-    wanted.range_from_mm = 0;
-    expect_filtered({"--ignore", "170:-170", "--range", ":16"}, robot, wanted);
-    wanted.range_from_mm = 280;
-  }
-  const std::string twice =
-      run({"dump", "-", "--ignore", "0:90", "--ignore", "90:359", "-f", "csv", "-q"}, simulated())
-          .out;
-  for (const row& r : rows_of(twice)) ASSERT_GT(r.angle_deg, 359.0);
-  EXPECT_GT(rows_of(twice).size(), 0U);
-}
 
 TEST(Dump, Count_IsAppliedAfterTheFilters) {
   const std::string all = run({"dump", "-", "-f", "csv", "--fov", "10:20", "-q"}, simulated()).out;
@@ -138,12 +95,6 @@ TEST(Dump, InvalidOptions_AreRefused) {
   refused({"-n", "0"}, "--count");
   refused({"-d", "0"}, "--duration");
   refused({"--grid", "3"}, "unknown option");
-}
-
-TEST(Dump, AModelThatContradictsTheSource_IsRefused) {
-  const outcome done = run({"dump", "sim:", "--model", "x4", "-n", "1"});
-  EXPECT_EQ(done.code, 2);
-  EXPECT_THAT(done.err, HasSubstr("model: x4, and the source states g4"));
 }
 
 }  // namespace

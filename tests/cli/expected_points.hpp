@@ -11,7 +11,14 @@
 #include <string>
 #include <vector>
 
+#include "program.hpp"
+
 namespace cli {
+
+inline const std::string& simulated() {
+  static const std::string bytes = run({"sim", "--seconds", "2", "--seed", "5"}).out;
+  return bytes;
+}
 
 struct expected_point {
   std::uint64_t scan;

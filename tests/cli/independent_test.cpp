@@ -6,7 +6,6 @@
 
 #include <cmath>
 #include <cstdint>
-#include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <sstream>
@@ -22,24 +21,12 @@
 namespace {
 
 using cli::expect_counted_times;
-using cli::lines_of;
-using cli::outcome;
 using cli::row;
 using cli::rows_of;
 using cli::run;
 using nlohmann::json;
 
 constexpr double degrees_of_radian = 180.0 / std::numbers::pi;
-
-std::vector<row> rows_of_jsonl(const std::string& text) {
-  std::vector<row> rows;
-  for (const std::string& line : lines_of(text)) {
-    const json p = json::parse(line);
-    rows.push_back({p.at("scan"), p.at("angle_deg"), p.at("range_mm"), p.at("time_ns")});
-    EXPECT_EQ(p.at("no_return").get<bool>(), rows.back().range == 0.0);
-  }
-  return rows;
-}
 
 class Independent : public cli::scratch {
  protected:
@@ -80,18 +67,6 @@ TEST_F(Independent, RawBytes) {
            {"convert", path("raw.bin"), "-", "--to-format", "csv"}}) {
     SCOPED_TRACE(words[0]);
     const std::vector<row> rows = rows_of(run(words).out);
-    expect_points(rows);
-    expect_counted_times(rows);
-  }
-}
-
-TEST_F(Independent, RawBytesAsJsonl) {
-  for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{
-           {"decode", path("raw.bin"), "-f", "jsonl"},
-           {"dump", path("raw.bin"), "-f", "jsonl"},
-           {"convert", path("raw.bin"), "-", "--to-format", "jsonl"}}) {
-    SCOPED_TRACE(words[0]);
-    const std::vector<row> rows = rows_of_jsonl(run(words).out);
     expect_points(rows);
     expect_counted_times(rows);
   }
@@ -155,17 +130,6 @@ TEST_F(Independent, ARecordingOfALidar) {
     EXPECT_GE(rows.size(), 4U * 1'200) << "four revolutions at 9 kHz and 7 Hz";
     cli::expect_points(rows, {all.begin(), all.begin() + static_cast<std::ptrdiff_t>(rows.size())});
     for (std::size_t i = 1; i < rows.size(); ++i) ASSERT_GE(rows[i].time_ns, rows[i - 1].time_ns);
-  }
-}
-
-TEST_F(Independent, TextOfText) {
-  for (const std::string from : {"csv", "jsonl"}) {
-    SCOPED_TRACE(from);
-    const std::string first = path("first." + from);
-    ASSERT_EQ(run({"convert", path("raw.bin"), first}).code, 0);
-    const std::vector<row> rows = rows_of(run({"convert", first, "-", "--to-format", "csv"}).out);
-    expect_points(rows);
-    expect_counted_times(rows);
   }
 }
 

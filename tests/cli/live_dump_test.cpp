@@ -30,9 +30,6 @@ namespace fs = std::filesystem;
 
 class Live : public cli::scratch {
  protected:
-  static bool appears(const std::string& name) {
-    return comes_true([&] { return fs::exists(name); });
-  }
   /// How much of it is there.
   static std::uintmax_t size_of(const std::string& name) {
     std::error_code none;
@@ -66,15 +63,6 @@ TEST_F(Live, TimesAreOfTheWallClockByDefault) {
   EXPECT_LT(time_of(from_zero.at(3)), 1'000'000'000);
 }
 
-TEST_F(Live, ScansInEachFormat) {
-  EXPECT_EQ(lines_of(run({"scan", "sim:", "-n", "2", "-f", "csv", "-q"}).out).size(), 3U);
-  EXPECT_EQ(
-      lines_of(run({"scan", "sim:", "-n", "1", "--grid", "4", "-f", "jsonl", "-q"}).out).size(),
-      1U);
-  EXPECT_EQ(run({"scan", "sim:", "-f", "pcd", "-n", "2", "-o", path("%d.pcd"), "-q"}).code, 0);
-  EXPECT_EQ(listing(), "0.pcd\n1.pcd\n");
-}
-
 // The duration is counted from the start command on; points come when the head has spun up.
 TEST_F(Live, Duration_EndsIt) {
   const auto begin = std::chrono::steady_clock::now();
@@ -91,34 +79,6 @@ TEST_F(Live, Duration_EndsIt) {
   EXPECT_LE(span_ns, 2.6e9) << "points from behind the end";
   // At most every sample from the first to the last one, 9,000 a second: a busy machine loses some.
   EXPECT_LE(static_cast<double>(lines.size() - 2), span_ns * 9e-6 * 1.01);
-}
-
-// At 0.5 m/s towards a wall.
-TEST_F(Live, ALidarOnAPath_SeesAWallComeNearer) {
-  cli::write_file(path("hall.txt"),
-                  "wall -2 -3 12 -3\nwall 12 -3 12 3\nwall 12 3 -2 3\nwall -2 3 -2 -3\n"
-                  "lidar 0 0 0\n");
-  cli::write_file(path("way.txt"), "drive forward 11 0.5\n");
-  program simulator(
-      {"sim", "--link", path("lidar"), "--world", path("hall.txt"), "--path", path("way.txt")});
-  ASSERT_TRUE(appears(path("lidar")));
-  for (const std::string& source :
-       {path("lidar"), "sim:?world=" + path("hall.txt") + "&path=" + path("way.txt")}) {
-    const outcome done =
-        run({"dump", source, "-n", "150", "-f", "csv", "--fov", "-1:1", "--time", "zero", "-q"});
-    EXPECT_EQ(done.code, 0) << done.err;
-    const std::vector<std::string> lines = lines_of(done.out);
-    ASSERT_EQ(lines.size(), 151U);
-    const auto number = [](const std::string& line, int column) {
-      std::size_t at = 0;
-      for (int i = 0; i < column; ++i) at = line.find(',', at) + 1;
-      return std::stod(line.substr(at));
-    };
-    // In the second half its speed is constant.
-    const double seconds = (number(lines[150], 3) - number(lines[75], 3)) * 1e-9;
-    EXPECT_GT(seconds, 0.8) << source;
-    EXPECT_NEAR(number(lines[75], 2) - number(lines[150], 2), 500.0 * seconds, 20.0) << source;
-  }
 }
 
 TEST_F(Live, Interrupted_PrintsTheCounts) {

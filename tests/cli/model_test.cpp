@@ -3,7 +3,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -83,22 +82,6 @@ TEST_F(ModelOfAFile, RawBytesAreRecognisedAndReported) {
   }
 }
 
-TEST_F(ModelOfAFile, BytesThatDoNotNameTheirModelAreReported) {
-  cli::write_file(path("tg.bin"), two_byte_stream("tg15", 8001, 3));
-  const outcome usual = run({"decode", path("tg.bin"), "-n", "1"});
-  EXPECT_THAT(usual.err, HasSubstr("read as G4: 2-byte samples do not name their model; --model "
-                                   "names another one: f4, g2a, g6, x4, x2, "));
-  EXPECT_THAT(usual.err, HasSubstr(", tg15, tx8\n"));
-  EXPECT_THAT(usual.out, HasSubstr(",2000.25,"));
-  const outcome named = run({"decode", path("tg.bin"), "-n", "1", "--model", "tg15"});
-  EXPECT_THAT(named.err, Not(HasSubstr("read as")));
-  EXPECT_THAT(named.out, HasSubstr(",8001.00,"));
-  cli::write_file(path("flags.bin"), two_byte_stream("x4", 1, 3));  // nothing but flags
-  EXPECT_THAT(run({"decode", path("flags.bin"), "-n", "1"}).err,
-              HasSubstr("read as X2: 2-byte samples with flags do not name their model; --model "
-                        "names another one: x4, x3-pro\n"));
-}
-
 TEST_F(ModelOfAFile, APipeIsRecognisedAsAFile) {
   const std::string bytes = t_mini_stream(20);
   for (const std::vector<std::string>& words :
@@ -132,29 +115,6 @@ TEST_F(ModelOfAFile, ASlowPipeIsFollowed) {
   EXPECT_EQ(started.wait().code, 0);
 }
 
-TEST_F(ModelOfAFile, TheNameOfAFileStatesIt) {
-  cli::write_file(path("tg.bin"), two_byte_stream("tg15", 8001, 3));
-  const auto decoded = [this](const std::string& name) {
-    return run({"dump", "file:" + path(name), "-f", "csv", "-n", "1"});
-  };
-  const outcome named = decoded("tg.bin?model=tg15");
-  EXPECT_EQ(named.code, 0) << named.err;
-  EXPECT_THAT(named.out, HasSubstr(",8001.00,"));
-  EXPECT_THAT(named.err, Not(HasSubstr("read as")));
-  EXPECT_EQ(decoded("tg.bin?model=tg99").code, 2);
-  EXPECT_THAT(decoded("tg.bin?model=tg99").err, HasSubstr("'tg99' is not one of g4, "));
-  EXPECT_EQ(run({"dump", "file:" + path("tg.bin?model=tg15"), "--model", "x4"}).code, 2);
-  EXPECT_EQ(run({"record", "file:" + path("tg.bin?model=tg15"), path("tg.mcap")}).code, 0);
-  EXPECT_THAT(run({"info", path("tg.mcap")}).out, HasSubstr("TG15"));
-  EXPECT_EQ(run({"doctor", "file:" + path("tg.bin?model=tg15"), "--json"}).code, 0);
-  EXPECT_EQ(run({"dump", "file:" + recorded_ + "?model=t-mini-pro", "-n", "1"}).code, 0);
-  EXPECT_EQ(run({"dump", "file:" + recorded_ + "?model=x4", "-n", "1"}).code, 7);
-  // A file with this name is meant first.
-  cli::write_file(path("odd?model=x4"), two_byte_stream("tg15", 8001, 3));
-  EXPECT_THAT(decoded("odd?model=x4").out, HasSubstr(",2000.25,"));
-  EXPECT_THAT(decoded("odd?model=x4?model=tg15").out, HasSubstr(",8001.00,"));
-}
-
 TEST_F(ModelOfAFile, ARecordingStatesIt) {
   const outcome played = run({"replay", recorded_, "--playback-speed", "max", "-f", "csv"});
   EXPECT_EQ(played.code, 0) << played.err;
@@ -167,35 +127,6 @@ TEST_F(ModelOfAFile, ARecordingStatesIt) {
   const std::string packets = run({"packets", recorded_}).out;
   EXPECT_THAT(packets, HasSubstr("30 samples"));
   EXPECT_THAT(packets, Not(HasSubstr("bad checksum")));
-}
-
-TEST_F(ModelOfAFile, AnotherModelThanTheRecordedOneIsRefused) {
-  for (const std::vector<std::string>& words :
-       std::vector<std::vector<std::string>>{{"dump", recorded_},
-                                             {"replay", recorded_},
-                                             {"packets", recorded_},
-                                             {"stats", recorded_},
-                                             {"info", recorded_},
-                                             {"doctor", recorded_},
-                                             {"convert", recorded_, path("out.csv")},
-                                             {"record", recorded_, path("out.mcap")}}) {
-    std::vector<std::string> with = words;
-    with.insert(with.end(), {"--model", "x4"});
-    const outcome done = run(with);
-    EXPECT_EQ(done.code, 7) << words.front();
-    EXPECT_THAT(done.err, HasSubstr("x4")) << words.front();
-    EXPECT_THAT(done.err, HasSubstr("t-mini-pro")) << words.front();
-  }
-  EXPECT_THAT(run({"info", recorded_}).out, HasSubstr("T-mini Pro"));
-}
-
-TEST_F(ModelOfAFile, AModelThatIsNoneIsRefusedByEveryCommand) {
-  for (const char* const verb :
-       {"dump", "scan", "decode", "record", "replay", "doctor", "view", "stats", "packets"}) {
-    const outcome done = run({verb, raw_, "--model", "x44"});
-    EXPECT_EQ(done.code, 2) << verb;
-    EXPECT_THAT(done.err, HasSubstr("'x44' is not one of g4, g4-pro, ")) << verb;
-  }
 }
 
 TEST_F(ModelOfAFile, FilesOfPointsHaveTheIntensity) {

@@ -8,7 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "wanted_points.hpp"
+#include "program.hpp"
+#include "recording.hpp"
 
 namespace {
 

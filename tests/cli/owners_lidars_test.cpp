@@ -31,47 +31,6 @@ class OwnersLidar : public cli::scratch {
   std::unique_ptr<simulator> served_;
 };
 
-TEST_F(OwnersLidar, SamplesOverruleTheNumber_AndTheWordOverrulesBoth) {
-  serve({"--model", "t-mini-plus-sh", "--device", "model_id=151"});
-  const outcome unnamed = run({"scan", "-n", "2", port_});
-  EXPECT_EQ(unnamed.code, 0) << unnamed.err;
-  EXPECT_THAT(unnamed.err,
-              HasSubstr("reports the number 151, that of a T-mini Plus. It is read as a "
-                        "T-mini Plus SH"));
-  EXPECT_THAT(unnamed.out, HasSubstr("whole"));
-  const outcome named = run({"scan", "-n", "2", "--model", "t-mini-plus-sh", port_});
-  EXPECT_EQ(named.code, 0) << named.err;
-  EXPECT_THAT(named.err, HasSubstr("reports the number 151"));
-  const outcome wrong = run({"scan", "-n", "2", "--model", "t-mini-plus", port_});
-  EXPECT_NE(wrong.code, 0);
-  EXPECT_THAT(wrong.err, HasSubstr("samples of 4 bytes, and a T-mini Plus has 3"));
-  EXPECT_THAT(wrong.err, Not(HasSubstr("power supply")));
-}
-
-TEST_F(OwnersLidar, ANumberThatNoModelHas_IsReadAsItWasNamed_OrAsItsSamplesShow) {
-  serve({"--model", "t-mini-plus", "--device", "model_id=153"});
-  for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{
-           {"scan", "-n", "2", port_}, {"scan", "-n", "2", "--model", "t-mini-plus", port_}}) {
-    const outcome done = run(words);
-    EXPECT_EQ(done.code, 0) << done.err;
-    EXPECT_THAT(done.err, HasSubstr("153, which no known model has"));
-    EXPECT_EQ(done.err.find("known model has"), done.err.rfind("known model has")) << done.err;
-    EXPECT_THAT(done.err, Not(HasSubstr("a G4")));
-    EXPECT_THAT(done.err, HasSubstr("Please report it"));
-    EXPECT_THAT(done.out, HasSubstr("whole"));
-  }
-}
-
-TEST_F(OwnersLidar, ARateThatItsModelDoesNotHave_IsFound) {
-  serve({"--model", "s2-intensity", "--device", "baud=153600"});
-  for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{
-           {"scan", "-n", "2", port_}, {"scan", "-n", "2", "--model", "s2-intensity", port_}}) {
-    const outcome done = run(words);
-    EXPECT_EQ(done.code, 0) << done.err;
-    EXPECT_THAT(done.err, HasSubstr("runs at 153600 baud"));
-  }
-}
-
 TEST_F(OwnersLidar, OfWhichOnlyTheDataWireIsConnected_IsRead) {
   serve({"--model", "t-mini-plus", "--fault", "scanning", "--fault", "deaf"});
   for (const std::vector<std::string>& options :
@@ -118,20 +77,6 @@ TEST_F(OwnersLidar, ThatAnswersNothing_HasNotStopped) {
   EXPECT_THAT(set.err, testing::Not(HasSubstr("no such command")));
 }
 
-TEST_F(OwnersLidar, ThatWaitsForCommandsIsSilentWhereItIsOnlyListenedTo) {
-  serve({"--model", "g4"});
-  for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{
-           {"scan", "--listen", port_}, {"scan", "--listen", "--model", "g4", port_}}) {
-    const outcome done = run(words);
-    EXPECT_NE(done.code, 0);
-    EXPECT_THAT(done.err, HasSubstr("only listened to"));
-  }
-  ASSERT_EQ(run({"record", "-n", "1", "sim:", "-o", path("walk.mcap")}).code, 0);
-  const outcome file = run({"scan", "--listen", path("walk.mcap")});
-  EXPECT_EQ(file.code, 2);
-  EXPECT_THAT(file.err, HasSubstr("--listen"));
-}
-
 TEST_F(OwnersLidar, DoctorListens_AndWritesNothing) {
   serve({"--model", "t-mini-plus", "--fault", "scanning"});
   const outcome done = run({"doctor", "--listen", "-d", "500ms", port_});
@@ -144,21 +89,6 @@ TEST_F(OwnersLidar, DoctorListens_AndWritesNothing) {
   EXPECT_EQ(waits.code, 6) << waits.out;
   EXPECT_THAT(waits.out, HasSubstr("a lidar that waits for a command is silent"));
   EXPECT_THAT(served_->log(), Not(HasSubstr(" A5 ")));
-}
-
-// Its packets cannot be read as those of a T-mini Pro: no advice to insist on it.
-TEST_F(OwnersLidar, DoctorStatesTheSamplesThatItHasSeen) {
-  serve({"--model", "t-mini-plus-sh", "--device", "model_id=151"});
-  for (const std::vector<std::string>& options :
-       std::vector<std::vector<std::string>>{{}, {"--model", "t-mini-pro"}}) {
-    std::vector<std::string> words{"doctor", "-d", "500ms", port_};
-    words.insert(words.end(), options.begin(), options.end());
-    const outcome done = run(words);
-    EXPECT_THAT(done.out, HasSubstr("bytes_per_sample 4"));
-    EXPECT_THAT(done.out, Not(HasSubstr("bytes_per_sample 3")));
-    EXPECT_THAT(done.out, Not(HasSubstr("insist")));
-    EXPECT_THAT(done.out, Not(HasSubstr("wrong_baud_rate")));
-  }
 }
 
 TEST_F(OwnersLidar, WhatContradictsTheModelStandsInItsRecording) {
@@ -286,16 +216,6 @@ TEST_F(OwnersLidar, AGuessedModelOfARecordingMayBeNamedLater) {
   EXPECT_THAT(insists.err, HasSubstr("the number 5, that of a G4. It is read as a G5"));
 }
 
-TEST_F(OwnersLidar, TheUserMayInsistOnTheModel) {
-  serve({"--model", "g4"});
-  const outcome refused = run({"scan", "-n", "2", "--model", "g5", port_});
-  EXPECT_NE(refused.code, 0);
-  EXPECT_THAT(refused.err, HasSubstr("--model WORD!"));
-  const outcome done = run({"scan", "-n", "2", "--model", "g5!", port_});
-  EXPECT_EQ(done.code, 0) << done.err;
-  EXPECT_THAT(done.err, HasSubstr("reports the number 5, that of a G4. It is read as a G5"));
-}
-
 TEST_F(OwnersLidar, BytesOfAFileThatAreNoPackets_AreNamedByEachVerb) {
   cli::write_file(path("x4.hex"), "AA 55 00 28 01 02 03 04 05 06 07 08\nAA 55 00 28 05 06 07 08\n");
   using words = std::vector<std::string>;
@@ -310,15 +230,6 @@ TEST_F(OwnersLidar, BytesOfAFileThatAreNoPackets_AreNamedByEachVerb) {
     EXPECT_NE(done.code, 0) << line[0];
     EXPECT_THAT(done.err, HasSubstr("xxd -r -p")) << line[0];
   }
-}
-
-TEST(OneWayNumber, ANumberThatTheModelDoesNotHave_IsReported) {
-  const std::string source =
-      "sim:?model=scl&model_id=4&ct_information=true&ct_crc=true&stray_before_zero=true";
-  using words = std::vector<std::string>;
-  for (const words& line :
-       {words{"info", source}, {"scan", source, "-n", "5"}})  // health may come before it
-    EXPECT_THAT(run(line).err, AllOf(HasSubstr("number 4"), HasSubstr("SCL"))) << line[0];
 }
 
 }  // namespace

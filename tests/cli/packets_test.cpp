@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <regex>
-#include <sstream>
 #include <string>
 #include <vector>
 
@@ -43,28 +42,6 @@ TEST(Packets, OfRawBytes) {
   EXPECT_THAT(done.err, HasSubstr("92 bytes: 4 packets (1 suspect) with 5 points, 1 response\n"));
 }
 
-TEST(Packets, ErrorsAlone) {
-  const std::vector<std::string> lines =
-      lines_of(run({"packets", "-", "--errors"}, with_everything()).out);
-  ASSERT_EQ(lines.size(), 4U);
-  for (const std::string& line : lines) EXPECT_THAT(line, HasSubstr(" ! "));
-  EXPECT_EQ(run({"packets", "-", "--errors"}, cli::zero(0) + cli::turn()).out, "");
-}
-
-// However the bytes are cut, the lines that --hex adds hold all of them, in order.
-TEST(Packets, Hex_ContainsEveryByte) {
-  std::string bytes = run({"sim", "--seconds", "1", "--seed", "2"}).out;
-  for (std::size_t i = 500; i < bytes.size(); i += 997)
-    bytes[i] = static_cast<char>(bytes[i] ^ 0x10);
-  std::string hex;
-  for (const std::string& line : lines_of(run({"packets", "-", "--hex", "-q"}, bytes).out)) {
-    if (!line.starts_with("    ") || line.find_first_of("<!") != std::string::npos) continue;
-    std::istringstream fields(line);
-    for (std::string byte; fields >> byte;) hex += static_cast<char>(std::stoi(byte, nullptr, 16));
-  }
-  EXPECT_EQ(hex, bytes);
-}
-
 TEST(Packets, BothDirectionsOfALidar) {
   const outcome done = run({"packets", "sim:?seed=4", "-d", "400ms", "--time", "zero"});
   EXPECT_EQ(done.code, 0) << done.err;
@@ -89,12 +66,6 @@ TEST(Packets, BytesBeforeAFailure_AreWritten) {
   EXPECT_EQ(done.code, 6);
   EXPECT_THAT(done.out, HasSubstr("> device information?  A5 90\n"));
   EXPECT_THAT(done.err, StartsWith("g4-dump: "));
-}
-
-TEST(Packets, Count_LimitsTheLines) {
-  EXPECT_EQ(lines_of(run({"packets", "-", "-n", "3", "-q"}, with_everything()).out).size(), 3U);
-  EXPECT_EQ(lines_of(run({"packets", "sim:", "-n", "20", "-q"}).out).size(), 20U);
-  EXPECT_EQ(run({"packets", "-", "--time", "abs"}, with_everything()).code, 2);
 }
 
 }  // namespace

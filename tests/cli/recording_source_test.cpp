@@ -166,11 +166,4 @@ TEST_F(RecordingSource, InAPipe_IsNotRecordedAsNoise) {
   EXPECT_THAT(done.err, HasSubstr("a recording in a pipe"));
 }
 
-TEST(AnotherModel, HasAnExitCodeOfItsOwn) {
-  const outcome done = run({"info", "sim:?model_id=4", "--json-errors"});
-  EXPECT_EQ(done.code, 7);
-  EXPECT_THAT(done.err, HasSubstr("\"problem\":\"other_device\""));
-  EXPECT_THAT(run({"dump", "sim:?model_id=256"}).err, HasSubstr("'256'"));
-}
-
 }  // namespace

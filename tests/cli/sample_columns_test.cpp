@@ -3,18 +3,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <cstddef>
 #include <cstring>
-#include <set>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "program.hpp"
 #include "support/family_reference.hpp"
-#include "support/laser_scan.hpp"
-#include "support/mcap_messages.hpp"
 
 namespace {
 
@@ -101,57 +96,6 @@ TEST_F(SampleColumns, AreReadAndWrittenAsText) {
       convert("b.jsonl", "c.csv", model);
       EXPECT_TRUE(text("c.csv") == text("a.csv")) << from;
     }
-  }
-}
-
-TEST_F(SampleColumns, OfAPipe) {
-  program started({"convert", "-", path("b.csv"), "--from-format", "csv"});
-  const std::string all = text("a.csv");
-  started.feed(all.substr(0, 30));
-  started.feed(all.substr(30));
-  const outcome done = started.wait();
-  EXPECT_EQ(done.code, 0) << done.err;
-  EXPECT_EQ(text("b.csv"), all);
-}
-
-template <class Number>
-Number number_at(const std::string& data, std::size_t at) {
-  Number number{};
-  std::memcpy(&number, data.data() + at, sizeof number);
-  return number;
-}
-
-TEST_F(SampleColumns, OfMessagesInARecording) {
-  convert("raw.bin", "b.mcap", {"--model", "t-mini", "--points"});
-  const auto scans = g4lidar::test::mcap_messages(text("b.mcap"), "/scan");
-  ASSERT_EQ(scans.size(), 3U) << "the last one has no end";
-  const auto first = g4lidar::test::read_laser_scan(scans.front());
-  ASSERT_EQ(first.intensities.size(), first.ranges.size());
-  // A range is that of one of the points, and so is the intensity; 0 where there is no point.
-  std::set<std::pair<float, float>> possible{{0.0F, 0.0F}};
-  for (const reference::family_point& each : seen().points) {
-    possible.emplace(static_cast<float>(each.range_mm), static_cast<float>(each.intensity));
-  }
-  std::size_t bright = 0;
-  for (std::size_t i = 0; i < first.ranges.size(); ++i) {
-    const float range_m = std::isfinite(first.ranges[i]) ? first.ranges[i] : 0.0F;
-    const float range_mm = std::round(range_m * 1000.0F);
-    if (range_mm > 0.0F) {
-      EXPECT_TRUE(possible.contains({range_mm, first.intensities[i]})) << i;
-    }
-    bright += first.intensities[i] > 0.0F ? 1U : 0U;
-  }
-  EXPECT_GT(bright, 200U);
-  const auto clouds = g4lidar::test::mcap_messages(text("b.mcap"), "/points");
-  ASSERT_EQ(clouds.size(), 3U);
-  const auto returns = wanted([](const reference::family_point& p) { return p.range_mm > 0.0; });
-  const std::string cloud(clouds.front().begin(), clouds.front().end() - 1);  // without is_dense
-  constexpr std::size_t row = 28;
-  const std::size_t count = returns.size() / 4;
-  ASSERT_GT(cloud.size(), count * row);
-  for (std::size_t i = 0; i < count; ++i) {
-    ASSERT_EQ(number_at<float>(cloud, cloud.size() - (count - i) * row + 24),
-              static_cast<float>(returns[i].intensity));
   }
 }
 

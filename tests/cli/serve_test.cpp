@@ -97,13 +97,6 @@ TEST_F(Serve, NoLog_PrintsNoCommands) {
   EXPECT_EQ(simulator.wait().err, "G4 2021101000070073 at " + path("lidar") + "\n");
 }
 
-TEST_F(Serve, AnotherModel_HasItsName) {
-  cli::program simulator({"sim", "--model", "t-mini-plus-sh", "--link", path("lidar")});
-  ASSERT_TRUE(appears(path("lidar")));
-  simulator.send(SIGTERM);
-  EXPECT_EQ(simulator.wait().err, "T-mini Plus SH 2021101000070073 at " + path("lidar") + "\n");
-}
-
 TEST_F(Serve, Faults_AreApplied) {
   cli::program simulator({"sim", "--link", path("lidar"), "--fault", "mute@0+60s", "--fault",
                           "scanning@100ms", "--fault", "unplug@2s+1s"});
@@ -113,29 +106,6 @@ TEST_F(Serve, Faults_AreApplied) {
   EXPECT_TRUE(appears(path("lidar")));
   simulator.send(SIGTERM);
   EXPECT_EQ(simulator.wait().code, 128 + SIGTERM);
-}
-
-TEST_F(Serve, DeviceOptions_AreApplied) {
-  const cli::simulator simulator(path("old"), {"--device", "answers_direction=false"});
-  EXPECT_THAT(run({"info", path("old")}).out, HasSubstr("direction   unknown"));
-  EXPECT_THAT(run({"info", "sim:?answers_direction=false&reaction_ns=2ms"}).out,
-              HasSubstr("direction   unknown"));
-  EXPECT_THAT(run({"info", "sim:?serial=1111222233334444&batch_min_ns=2ms&batch_max_ns=3ms"}).out,
-              HasSubstr("serial      1111222233334444\n"));
-  EXPECT_THAT(run({"info", "sim:"}).out, HasSubstr("direction   cw"));
-  const auto expect_refused = [](const std::string& option, const std::string& why) {
-    for (const auto& arguments :
-         {std::vector<std::string>{"sim", "--device", option}, {"info", "sim:?" + option}}) {
-      const outcome done = run(arguments);
-      EXPECT_EQ(done.code, 2) << option;
-      EXPECT_THAT(done.err, HasSubstr(why));
-    }
-  };
-  expect_refused("colour=red", "'colour' is not one of fault, ");
-  expect_refused("header_ns=2parsecs", "'2parsecs' is not a time");
-  expect_refused("header_ns=2min", "must take 0 to 60 s");
-  expect_refused("boot_text=1", "'1' is not one of false, true");
-  EXPECT_THAT(run({"sim", "--device", "boot_ns=1s"}).err, HasSubstr("need --link"));
 }
 
 TEST_F(Serve, InvalidOptions_AreRefused) {

@@ -16,7 +16,6 @@ using cli::lines_of;
 using cli::outcome;
 using cli::run;
 using nlohmann::json;
-using ::testing::StartsWith;
 
 std::vector<double> numbers_of(const std::string& line) {
   std::vector<double> numbers;
@@ -41,22 +40,6 @@ class Sim : public cli::scratch {
     return json::parse(run({"decode", "--stats", "json", "--valid"}, bytes).err);
   }
 };
-
-TEST_F(Sim, SameSeedSameBytes) {
-  const std::string one = bytes_of({"--seconds", "1", "--seed", "7"});
-  EXPECT_EQ(bytes_of({"--seconds", "1", "--seed", "7"}), one);
-  EXPECT_NE(bytes_of({"--seconds", "1", "--seed", "8"}), one);
-  EXPECT_EQ(run({"sim", "--seconds", "1", "--seed", "7"}).out, one);
-  EXPECT_THAT(bytes_of({"--seconds", "2", "--seed", "7"}), StartsWith(one));
-}
-
-TEST_F(Sim, DecodesWithoutASingleSkippedByte) {
-  const json stats = stats_of(bytes_of({"--seconds", "3"}));
-  EXPECT_EQ(stats.at("responses"), 1);
-  EXPECT_EQ(stats.at("suspect"), 0);
-  EXPECT_NEAR(stats.at("points").get<double>(), 27'000.0, 40.0);
-  for (const auto& [reason, count] : stats.at("skipped").items()) EXPECT_EQ(count, 0) << reason;
-}
 
 TEST_F(Sim, OptionsReachTheScanner) {
   const auto points = [&](std::vector<std::string> options) {

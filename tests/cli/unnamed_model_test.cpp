@@ -3,7 +3,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
@@ -24,26 +23,22 @@ using nlohmann::json;
 using ::testing::EndsWith;
 using ::testing::HasSubstr;
 using ::testing::Not;
-using ::testing::StartsWith;
 
 /// What is behind a port, by the manuals: not by the table of the library.
 struct kind {
   std::string word;
   std::string name;
   bool is_scanning;         ///< A dead host has left it scanning.
-  std::string columns;      ///< After those of every model.
-  double revolution;        ///< Samples: kHz and Hz of the simulated device.
   std::string others = {};  ///< Models that send the same.
 };
 
 const std::vector<kind>& kinds() {
-  static const std::vector<kind> all{
-      {"g4", "G4", false, "", 9000 / 7.0},
-      {"x4", "X4", false, ",sample_flags", 5000 / 7.0},
-      {"x2", "X2", false, ",sample_flags", 3000 / 7.0, "x2l, x3"},
-      {"t-mini-pro", "T-mini Pro", false, ",intensity,sample_flags", 4000 / 10.0},
-      {"tg15", "TG15", false, "", 20'000 / 7.0},
-      {"g2", "G2", true, ",intensity", 5000 / 7.0}};
+  static const std::vector<kind> all{{"g4", "G4", false},
+                                     {"x4", "X4", false},
+                                     {"x2", "X2", false, "x2l, x3"},
+                                     {"t-mini-pro", "T-mini Pro", false},
+                                     {"tg15", "TG15", false},
+                                     {"g2", "G2", true}};
   return all;
 }
 
@@ -81,19 +76,6 @@ TEST_P(UnnamedModel, InfoNamesItAndWhatSendsTheSame) {
       << text.err;
 }
 
-TEST_P(UnnamedModel, PointsHaveItsColumnsAndRevolutionsItsLength) {
-  serve();
-  const outcome points = run({"dump", port_, "-n", "50", "-f", "csv"});
-  ASSERT_EQ(points.code, 0) << points.err;
-  EXPECT_THAT(points.out,
-              StartsWith("scan,angle_deg,range_mm,time_ns" + GetParam().columns + "\n"));
-  const outcome scans = run({"scan", port_, "-n", "15", "-f", "jsonl"});  // until it has spun up
-  ASSERT_EQ(scans.code, 0) << scans.err;
-  const json last = json::parse(scans.out.substr(scans.out.rfind('\n', scans.out.size() - 2) + 1));
-  EXPECT_NEAR(last.at("points"), GetParam().revolution, 0.05 * GetParam().revolution);
-  EXPECT_FALSE(last.at("partial"));
-}
-
 INSTANTIATE_TEST_SUITE_P(Models, UnnamedModel, testing::ValuesIn(kinds()), [](const auto& of) {
   std::string name = of.param.word;
   std::erase(name, '-');
@@ -113,71 +95,6 @@ TEST_F(FoundModel, CommandsThatReadScans_FindIt) {
   EXPECT_EQ(run({"stats", port_, "-n", "2"}).code, 0);
 }
 
-TEST_F(FoundModel, SettingsHaveItsLimits) {
-  serve("tg15");  // 3 to 16 Hz
-  const outcome slow = run({"set", port_, "frequency=4", "--json"});
-  ASSERT_EQ(slow.code, 0) << slow.err;
-  EXPECT_EQ(json::parse(slow.out).at("after"), 4.0);
-  served_.reset();
-  std::filesystem::remove(port_);
-  serve("t-mini-pro");  // 6 to 12 Hz
-  const outcome refused = run({"set", port_, "frequency=5"});
-  EXPECT_EQ(refused.code, 2);
-  EXPECT_THAT(refused.err, HasSubstr("frequency=5.0: a T-mini Pro has 6 to 12 Hz"));
-}
-
-TEST_F(FoundModel, RefusedSettingNamesTheCandidatesAndHowToChoose) {
-  serve("x2");
-  const outcome refused = run({"set", port_, "frequency=7"});
-  EXPECT_EQ(refused.code, 2) << refused.err;
-  EXPECT_THAT(refused.err,
-              AllOf(HasSubstr(", scan frequency 7 Hz, X2 ("), HasSubstr("(or x2l, x3")));
-  EXPECT_THAT(refused.err, HasSubstr("If the lidar is another model, name it with"));
-  EXPECT_THAT(refused.err, HasSubstr("--model"));
-}
-
-TEST_F(FoundModel, NamedModelDecides) {
-  serve("x2");
-  for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{
-           {"info", port_, "--json", "--model", "x3"}, {"info", port_ + "?model=x3", "--json"}}) {
-    const outcome done = run(words);
-    ASSERT_EQ(done.code, 0) << done.err;
-    const json found = json::parse(done.out).at("lidar");
-    EXPECT_EQ(found, (json{{"model", "x3"},
-                           {"candidates", {"x3"}},
-                           {"known_by", "user"},
-                           {"contradictions", ""}}));
-    EXPECT_THAT(done.err, Not(HasSubstr("read as")));
-  }
-}
-
-TEST_F(FoundModel, NamedModelThatTheDeviceContradicts_ErrorNamesBoth) {
-  serve("g1");  // with the rate and the samples of a G2A
-  for (const char* const command : {"info", "dump", "scan", "packets", "health", "stop", "start"}) {
-    const outcome done = run({command, port_, "--model", "g2a"});
-    EXPECT_EQ(done.code, 7) << command << done.err;
-    EXPECT_THAT(done.err, HasSubstr("model 19 (G1), not G2A")) << command;
-  }
-}
-
-TEST_F(FoundModel, ValuesOfNoModelAreRefusedWithTheLimitsOfAll) {
-  const outcome refused = run({"set", port_, "frequency=17"});
-  EXPECT_EQ(refused.code, 2);
-  EXPECT_THAT(refused.err, HasSubstr("'17' is not in the range 3 to 16 Hz"));
-  const outcome rate = run({"set", port_, "sample_rate=7k"});
-  EXPECT_EQ(rate.code, 2);
-  EXPECT_THAT(rate.err, HasSubstr("'7k' is not one of 4k, 6k, 8k, 9k, 10k, 16k, 18k, 20k"));
-}
-
-TEST_F(FoundModel, RatesOfAnotherModelAreRefusedWithThoseOfItsOwn) {
-  serve("f4-pro");
-  const outcome refused = run({"set", port_, "sample_rate=9k"});
-  EXPECT_EQ(refused.code, 2);
-  EXPECT_THAT(refused.err,
-              HasSubstr("sample_rate=9k: an F4 Pro has 4000, 6000 samples per second"));
-  EXPECT_EQ(run({"set", port_, "sample_rate=6000"}).code, 0);
-}
-
 TEST_F(FoundModel, StopOfALidarWithoutCommands_DoesNotClaimIt) {
   serve("x2");
   const outcome done = run({"stop", port_});
@@ -191,31 +108,6 @@ TEST_F(FoundModel, StopOfALidarThatTurnsWithItsSupply_DoesNotClaimIt) {
   const outcome done = run({"stop", port_, "--model", "x4-pro"});
   EXPECT_EQ(done.code, 0) << done.err;
   EXPECT_THAT(done.err, HasSubstr(": this model has no commands: its scan cannot be stopped"));
-}
-
-// An X4 and an X4 Pro send the same at the same rate; one answers.
-TEST_F(FoundModel, OneWayLidarThatIsOpenedAsATwoWayOne_TheWarningNamesThisCause) {
-  serve("x4-pro");
-  const outcome done = run({"health", port_, "--model", "x4"});
-  EXPECT_NE(done.code, 0);
-  EXPECT_THAT(done.err, HasSubstr("as of an X4, and answers no command"));
-  EXPECT_THAT(done.err, HasSubstr("it is a one-way model"));
-}
-
-TEST_F(FoundModel, ATgThatDoesNotAnswerItsRate_HasThisSetting) {
-  serve("tg30");
-  const outcome done = run({"info", port_});
-  EXPECT_EQ(done.code, 0) << done.err;
-  EXPECT_THAT(done.out, HasSubstr("sample_rate unknown (no answer)\n"));
-  EXPECT_THAT(done.out, HasSubstr("idle        unknown (TG30 has no such setting)\n"));
-}
-
-TEST_F(FoundModel, ATgThatAnswersItsRate_TheRateIsPrinted) {
-  served_ = std::make_unique<simulator>(
-      port_, std::vector<std::string>{"--model", "tg30", "--device", "answers_sample_rate=true"});
-  const outcome done = run({"info", port_});
-  EXPECT_EQ(done.code, 0) << done.err;
-  EXPECT_THAT(done.out, HasSubstr("sample_rate 20k\n"));
 }
 
 TEST_F(FoundModel, HealthOfAOneWayLidar_IsThatOfItsCtBytes) {

@@ -16,7 +16,6 @@ namespace {
 using cli::lines_of;
 using cli::outcome;
 using cli::run;
-using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
@@ -64,23 +63,6 @@ class ZeroAngleOption : public cli::scratch {
   std::string log_;  // what points_of() wrote to standard error
 };
 
-TEST_F(ZeroAngleOption, RawBytesOfARecordingHaveIt) {
-  for (const char* const cdeg : {"-7375", "9000", "18000"}) {
-    record(std::string("sim:?model=tg15&zero_angle_cdeg=") + cdeg);
-    const auto wanted = some_of(points_of("a.mcap"));
-    ASSERT_EQ(wanted.size(), 1000U);
-    convert("a.mcap", "a.bin");
-    convert("a.mcap", "part.bin", {"--from", "500ms"});
-    convert("a.mcap", "part.mcap", {"--from", "500ms"});
-    convert("a.bin", "again.mcap");
-    convert("a.bin", "again.bin", {"--from", "500ms"});
-    for (const char* const name : {"a.bin", "part.bin", "part.mcap", "again.mcap", "again.bin"}) {
-      EXPECT_TRUE(has(points_of(name), wanted)) << name << " " << cdeg;
-      EXPECT_THAT(log_, Not(HasSubstr(missing))) << name << " " << cdeg;
-    }
-  }
-}
-
 TEST_F(ZeroAngleOption, WhereItIsMissing_ALineReportsIt) {
   record("sim:?model=tg15&zero_angle_cdeg=9000&fault=mute=93");
   convert("a.mcap", "a.bin");
@@ -119,57 +101,6 @@ TEST_F(ZeroAngleOption, WhereItHasNoMeaning_IsRefused) {
   expect_refused({"convert", raw, path("out.bin"), "--zero-angle", "10"},
                  "the bytes stay as they are");
   EXPECT_EQ(listing(), "g4.bin\n");
-}
-
-class FewBytes : public cli::scratch {};
-
-TEST_F(FewBytes, OneOrTwoPacketsAreReadAndTheModelIsNamed) {
-  struct row {
-    std::string model;
-    std::size_t packet;  ///< The size of one with 40 samples.
-    std::string line;
-  };
-  for (const auto& [word, size, line] :
-       {row{"t-mini-pro", 130, "read as T-mini Pro: 3-byte samples"},
-        row{"tg15", 90, "read as G4: 2-byte samples do not name their model; --model"},
-        row{"t-mini-plus-sh", 170, "read as T-mini Plus SH: 4-byte samples"}}) {
-    const std::string file = path(word);
-    ASSERT_EQ(run({"sim", "--model", word, "--seconds", "1", "-o", file}).code, 0);
-    const std::string all = cli::read_file(file);
-    std::size_t at = 0;
-    while (at + 2 * size < all.size() &&
-           !(all.compare(at, 2, "\xAA\x55") == 0 && all[at + 3] == 40 &&
-             all.compare(at + size, 2, "\xAA\x55") == 0 && all[at + size + 3] == 40)) {
-      ++at;
-    }
-    for (const std::size_t packets : {1U, 2U}) {
-      const std::string few = all.substr(at, packets * size);
-      cli::write_file(path("few.bin"), few);
-      for (const outcome& done : {run({"decode", path("few.bin")}), run({"decode"}, few)}) {
-        EXPECT_EQ(done.code, 0) << done.err;
-        EXPECT_THAT(done.err, HasSubstr(line)) << packets;
-        EXPECT_EQ(lines_of(done.out).size(), 1 + 40 * packets) << word;
-      }
-      EXPECT_EQ(run({"doctor", path("few.bin")}).out.find("unknown_bytes"), std::string::npos)
-          << word;
-    }
-  }
-}
-
-TEST_F(FewBytes, ANumberOfAnotherModel_IsReportedWithBoth) {
-  const std::string file = path("scl.bin");
-  const outcome made = run(
-      {"record", "sim:?model=scl&model_id=4&ct_information=true&ct_crc=true&stray_before_zero=true",
-       "-o", path("scl.mcap"), "-d", "2s"});
-  ASSERT_EQ(made.code, 0) << made.err;
-  const auto line = AllOf(HasSubstr("reports the number 4"), HasSubstr("read as an SCL"));
-  EXPECT_THAT(made.err, line);
-  EXPECT_THAT(run({"decode", path("scl.mcap")}).err, line);
-  ASSERT_EQ(run({"convert", path("scl.mcap"), file}).code, 0);
-  EXPECT_THAT(run({"decode", file, "--model", "scl"}).err, line);
-  const outcome unnamed = run({"decode", file});
-  EXPECT_THAT(unnamed.err, HasSubstr("read as S2 with intensity"));
-  EXPECT_THAT(unnamed.err, Not(HasSubstr("reports the number")));
 }
 
 }  // namespace

@@ -102,17 +102,6 @@ TEST(Settings, AreSetAndReadBack) {
             motor_direction::counter_clockwise);
 }
 
-TEST(Settings, AreRefusedDuringAScanUnlessItMayBeInterrupted) {
-  virtual_bench bench;
-  auto lidar = open_virtual(bench);
-  ASSERT_TRUE(lidar);
-  ASSERT_TRUE(lidar->start());
-  const auto refused = lidar->set(scan_frequency::hz(9));
-  ASSERT_FALSE(refused);
-  EXPECT_EQ(refused.error(), problem::scanning);
-  EXPECT_EQ(lidar->set(scan_frequency::hz(9), while_scanning::stop_and_resume).value().chz, 900);
-}
-
 TEST(Settings, FrequencyInHertz_IsRoundedAndNeverWraps) {
   static_assert(scan_frequency::hz(7.5).chz == 750);
   static_assert(scan_frequency::hz(6.994).chz == 699);

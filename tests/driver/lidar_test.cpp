@@ -165,12 +165,5 @@ TEST(Lidar, ReconnectsAfterAnUnplug) {
   EXPECT_EQ(lidar->counts().reconnects, 1U);
 }
 
-TEST(Lidar, NeedsToBeStarted) {
-  virtual_bench bench;
-  auto lidar = open_virtual(bench);
-  ASSERT_TRUE(lidar);
-  EXPECT_EQ(lidar->try_scan(100ms).error().code(), problem::not_scanning);
-}
-
 }  // namespace
 }  // namespace g4lidar

@@ -182,13 +182,6 @@ TEST_F(Publish, ThePlaceOfTheLidarForLateReaders) {
   tool.send(SIGINT);
 }
 
-TEST_F(Publish, AnotherModelEndsItWithTheReason) {
-  cli::program tool({"sim:?model_id=4"});
-  const cli::outcome end = tool.wait();
-  EXPECT_EQ(end.code, 7);
-  EXPECT_NE(end.err.find("model 4, not G4"), std::string::npos) << end.err;
-}
-
 TEST_F(Publish, SettingsOfARecordingWithOdometryAreRefusedWithTheReason) {
   const std::string file = path("walk.mcap");
   cli::write_file(path("way.txt"), "drive forward 0.5 0.5\n");
@@ -196,13 +189,6 @@ TEST_F(Publish, SettingsOfARecordingWithOdometryAreRefusedWithTheReason) {
                  "--odometry " + path("way.odo"));
   const cli::outcome end = cli::program({file, "--set", "frequency=10"}).wait();
   EXPECT_NE(end.err.find("a file cannot be asked or set"), std::string::npos) << end.err;
-}
-
-TEST_F(Publish, AMaskThatIsADirectoryIsExplained) {
-  const cli::outcome end = cli::program({"sim:", "--mask", path("")}).wait();
-  EXPECT_EQ(end.code, 10);
-  EXPECT_NE(end.err.find("mask: '" + path("") + "' is a directory. Give a file"), std::string::npos)
-      << end.err;
 }
 
 TEST_F(Publish, AMissingFileIsReportedOnce) {

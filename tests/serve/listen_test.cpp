@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdint>
 #include <cstring>
 #include <string>
 #include <vector>
@@ -133,29 +132,6 @@ TEST(Hosts, OfOneAddress) {
 TEST_F(Listening, Localhost_IsAnAddress) {
   begin({"--address", "localhost"});
   EXPECT_THAT(ask("GET"), StartsWith("HTTP/1.1 200"));
-}
-
-// Walls 2 m ahead of the lidar and 1 m behind it.
-TEST_F(Listening, Fov_IsInTheFrameOfThePage) {
-  cli::write_file(path("room.txt"),
-                  "wall -2 -1.5   1 -1.5\nwall 1 -1.5   1 1\nwall 1 1   -2 1\n"
-                  "wall -2 1   -2 -1.5\nlidar 0 0 0\n");
-  begin({"--fov", "-60:60"}, "sim:?world=" + path("room.txt"));
-  const auto client = open_page();
-  std::string scan;
-  while (!scan.starts_with("\x10\x01") || scan.substr(2, 2) == std::string(2, '\0')) {
-    const auto message = client->next_frame();
-    ASSERT_TRUE(message);
-    scan = *message;
-  }
-  float farthest_m = 0;
-  for (std::size_t at = 16; at + 8 <= scan.size(); at += 8) {
-    float x_m = 0;
-    std::memcpy(&x_m, scan.data() + at, sizeof(x_m));
-    EXPECT_GT(x_m, 0.0F) << "behind the lidar";
-    farthest_m = std::max(farthest_m, x_m);
-  }
-  EXPECT_NEAR(farthest_m, 2.0F, 0.1F);
 }
 
 // The help of each program names the default of that program.

@@ -230,35 +230,6 @@ TEST_F(Merged, FoxgloveGetsThem_InTheFrameOfTheRobot) {
   EXPECT_EQ(seen, 2000U);
 }
 
-TEST_F(Merged, OnARobotThatMoves_TheWallsStay) {
-  if constexpr (std::endian::native != std::endian::little) GTEST_SKIP();
-  const char* const way = "drive wait 2\ndrive forward 1 0.5\ndrive turn 90 60\ndrive wait 60\n";
-  cli::write_file(path("front.txt"),
-                  std::string(small_room) + "mount 0.3,0.1,20\nlidar 0 0 0\n" + way);
-  cli::write_file(path("rear.txt"),
-                  std::string(small_room) + "mount -0.4,-0.2,-150\nlidar 0 0 0\n" + way);
-  begin_both();
-  const auto client = open_page();
-  std::vector<double> distances;
-  double farthest_m = 0;
-  next_revolution(*client, [&](const revolution& got) {
-    if (!got.pose || !has_both(got)) return false;
-    const auto [x, y, yaw] = *got.pose;
-    for (const place& at : got.points) {
-      distances.push_back(to_wall({x + std::cos(yaw) * at.x - std::sin(yaw) * at.y,
-                                   y + std::sin(yaw) * at.x + std::cos(yaw) * at.y}));
-    }
-    farthest_m = std::max(farthest_m, std::hypot(x, y));
-    return yaw > 1.5;
-  });
-  EXPECT_GT(farthest_m, 0.9);
-  ASSERT_GT(distances.size(), 20'000U);
-  std::ranges::sort(distances);
-  // The rear lidar's robot is another one, which has started at nearly the same time.
-  EXPECT_LT(distances[distances.size() / 2], 0.03);
-  EXPECT_LT(distances[distances.size() * 9 / 10], 0.12);
-}
-
 TEST_F(Merged, NoneIsRecorded_IfOneIsNotConnected) {
   std::filesystem::create_directory(path("made"));
   begin_both({"--allow-record", path("made")}, "&fault=unplug@2s");

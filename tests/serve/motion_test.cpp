@@ -7,7 +7,6 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -102,43 +101,6 @@ TEST_F(Moving, ByOdometry_WallsStayWhereTheyAre) {
   EXPECT_NEAR(last.x_m, wanted.x_m, 0.01);
   EXPECT_NEAR(last.y_m, wanted.y_m, 0.01);
   EXPECT_NEAR(last.yaw_rad, wanted.yaw_rad, 0.01);
-}
-
-TEST_F(Moving, OfARecordingThatBeginsAgain_ItIsAnotherMap) {
-  if constexpr (std::endian::native != std::endian::little) GTEST_SKIP();
-  record_odometry();
-  serve_options options;
-  options.common.mount = mounting{{0.3, 0.1, 1.5707963267948966}, false};
-  most_scans_ = 100;  // a round has less than 70
-  play(path("room.mcap"), true, options);
-  std::set<std::uint32_t> maps;
-  for (const page_message& each : messages_) {
-    if (each.has_place()) maps.insert(each.map());
-  }
-  EXPECT_EQ(maps.size(), 2U);
-  const auto all = distances({});
-  EXPECT_LT(all[all.size() * 99 / 100], 0.02);
-}
-
-TEST_F(Moving, ByTheScans_WallsStayWhereTheyAre) {
-  if constexpr (std::endian::native != std::endian::little) GTEST_SKIP();
-  serve_options options;
-  options.common.deskew = deskewing::by_scans;
-  play(path("room.bin"), false, options);
-  ASSERT_GT(messages_.size(), 40U);
-  // The robot waits at first, so the map begins where the lidar was.
-  const auto all = distances({0.3, 0.1, 1.5707963267948966});
-  ASSERT_GT(all.size(), 30'000U);
-  EXPECT_LT(all[all.size() / 2], 0.03);
-  EXPECT_LT(all[all.size() * 95 / 100], 0.2);
-}
-
-TEST_F(Moving, WithoutAKnownMotion_ThereIsNoPlace) {
-  if constexpr (std::endian::native != std::endian::little) GTEST_SKIP();
-  record_odometry();
-  play(path("room.mcap"), false);  // where the lidar is on the robot is not known
-  ASSERT_GT(messages_.size(), 40U);
-  for (const page_message& each : messages_) EXPECT_FALSE(each.has_place());
 }
 
 }  // namespace

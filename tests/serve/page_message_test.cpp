@@ -43,20 +43,6 @@ TEST(PageScan, HasTheReturnsInTheRobotsFrame) {
   EXPECT_NEAR(number_at<float>(data, 28), 0.5F, 1e-5F);
 }
 
-TEST(PageScan, IsTurnedAsItsModel) {
-  if constexpr (std::endian::native != std::endian::little) GTEST_SKIP();
-  const std::vector<g4lidar::point> points{{.angle_deg = 270.0F, .range_mm = 2000.0F}};
-  std::vector<std::uint8_t> data;
-  put_page_scan({.revolution = {.points = points,
-                                .flags = g4lidar::scan_flags::data_lost,
-                                .model = g4lidar::model_named("x4")},
-                 .stamp_s = 1.5},
-                data);
-  EXPECT_EQ(data[1], 0);
-  EXPECT_NEAR(number_at<float>(data, 16), 0.0F, 1e-5F);
-  EXPECT_NEAR(number_at<float>(data, 20), 2.0F, 1e-5F);  // to the left
-}
-
 TEST(PageScan, HasThePlace_AfterTheReturns) {
   if constexpr (std::endian::native != std::endian::little) GTEST_SKIP();
   using g4lidar::point;

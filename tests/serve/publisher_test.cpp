@@ -178,13 +178,6 @@ TEST_F(Ranges, ANoReturnIsWhatTheOptionSets) {
   EXPECT_GE(last_with(16.0F, options), 200U) << "the longest range of a G4";
   EXPECT_EQ(g4lidar::test::read_laser_scan(last_).range_max, 16.0F);
 }
-TEST_F(Ranges, TheLongestRangeIsTheLimitOfTheFilter) {
-  serve_options options;
-  options.common.grid.no_return = no_return_as::max;
-  options.common.filter.greatest_range_mm = 9000.0F;
-  EXPECT_GE(last_with(9.0F, options), 200U) << "what is farther is left out";
-  EXPECT_EQ(g4lidar::test::read_laser_scan(last_).range_max, 9.0F);
-}
 TEST_F(Ranges, WhatMayBeTooNearIsMinusInfinity_WithTheOption) {
   serve_options options;
   options.common.marks.near = near_limits{.revolutions = near_limits::until_return};

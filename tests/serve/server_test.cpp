@@ -288,30 +288,6 @@ TEST_F(Server, OnLossExit_EndsAsOtherCommands) {
   EXPECT_EQ(done.code, 9) << cli::read_file(path("err"));
 }
 
-TEST_F(Server, OptionOfAnotherKindOfSource_IsRefused) {
-  const std::string raw = path("walk.bin");
-  cli::write_file(raw, cli::run({"sim", "--seconds", "1"}).out);
-  const auto expect_refused = [](const std::string& source, const std::vector<std::string>& given) {
-    std::vector<std::string> words{"serve", source, "--port", "0"};
-    words.insert(words.end(), given.begin(), given.end());
-    const outcome done = cli::run(words);
-    EXPECT_EQ(done.code, 2) << source << given.front();
-    EXPECT_THAT(done.err, HasSubstr(given.front() + ", and " + source)) << source;
-  };
-  for (const char* const each : {"--listen", "--all-ports"}) expect_refused(raw, {each});
-  for (const char* const rule : {"exit", "reconnect", "wait"})
-    expect_refused(raw, {"--on-loss", rule});
-  expect_refused(raw, {"--baud", "115200"});
-  expect_refused("sim:", {"--loop"});
-  expect_refused("sim:", {"--playback-speed", "2"});
-}
-
-TEST_F(Server, AnotherModel_EndsWithTheReason) {
-  const outcome done = cli::run({"serve", "sim:?model_id=4", "--port", "0"});
-  EXPECT_EQ(done.code, 7);
-  EXPECT_THAT(done.err, HasSubstr("model 4, not G4"));
-}
-
 TEST_F(Server, PortInUse_IsReported) {
   begin();
   const outcome second = cli::run({"serve", "sim:", "--port", std::to_string(port_)});

@@ -140,17 +140,6 @@ TEST(LivePackets, WithoutSamples_AreCounted_AndLoseNothing) {
 
 // ---- identity -----------------------------------------------------------------------------------
 
-TEST(LiveIdentity, AnotherModelThanTheNamedOne_IsAnErrorThatNamesBoth) {
-  sim::device_options options = options_of(g4_model);
-  options.info.model = 9;  // an R2, with the same rate and samples
-  bench on(g4_model, options);
-  const auto lidar = on.open();
-  ASSERT_FALSE(lidar);
-  EXPECT_EQ(lidar.error().code(), problem::other_device);
-  EXPECT_NE(lidar.error().message().find("R2"), std::string::npos) << lidar.error().message();
-  EXPECT_NE(lidar.error().message().find("not G4"), std::string::npos) << lidar.error().message();
-}
-
 TEST(LiveIdentity, OfAOneWayLidar_ComesFromCt) {
   const model& which = *model_named("x4-pro");
   bench on(which);
@@ -185,16 +174,6 @@ TEST(LiveIdentity, SettingsThatTheModelDoesNotHave_AreRefusedAtOnce) {
   g6.sample_rate = sample_rate::khz_9;
   ASSERT_TRUE(problem_with(g6));
   EXPECT_EQ(problem_with(g6)->subject(), "sample_rate: 8000, 16000 or 18000 of a G6");
-}
-
-TEST(LiveIdentity, RateOfAG6_IsSet) {
-  bench on(*model_named("g6"));
-  lidar_options how;
-  how.sample_rate = sample_rate{8000};
-  auto lidar = on.open(how);
-  ASSERT_TRUE(lidar) << lidar.error().message();
-  ASSERT_TRUE(lidar->start());
-  EXPECT_EQ(on.device.settings().sample_rate, sample_rate{8000});
 }
 
 // The first scan of a lidar that turns comes after at most two revolutions and 0.3 s.
