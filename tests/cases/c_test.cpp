@@ -116,8 +116,8 @@ outcome outcome_of(const g4lidar_scan& last, const shaper& by) {
   outcome seen;
   seen.model = last.model;
   seen.samples = static_cast<double>(last.point_count);
-  seen.frequency_hz = last.frequency_hz;
-  seen.longest_m = double{last.longest_range_mm} * 1e-3;
+  seen.frequency_hz = static_cast<double>(last.frequency_hz);
+  seen.longest_m = static_cast<double>(last.longest_range_mm) * 1e-3;
   const auto kept = kept_by(by);
   std::vector<g4lidar_xy> places(kept.size());
   EXPECT_EQ(g4lidar_to_xy(kept.data(), kept.size(), G4LIDAR_ROBOT, last.turn_deg, places.data()),

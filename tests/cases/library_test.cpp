@@ -76,7 +76,7 @@ outcome outcome_of(const scan& last, scan_shaper& shaper) {
   outcome seen;
   seen.model = last.model->word;
   seen.samples = static_cast<double>(last.points.size());
-  seen.frequency_hz = last.measured_frequency_hz();
+  seen.frequency_hz = static_cast<double>(last.measured_frequency_hz());
   seen.shortest_m = last.model->range.min_mm * 1e-3;
   seen.longest_m = last.model->range.max_mm * 1e-3;
   for (const point& each : shaper.kept()) {

@@ -60,8 +60,8 @@ TEST_P(Ros2, DoesIt) {
   std::size_t taken = 0;
   EXPECT_TRUE(comes_true([&] {
     scans.take([&](const scan_message& scan) {
-      seen.shortest_m = double{scan.range_min};
-      seen.longest_m = double{scan.range_max};
+      seen.shortest_m = static_cast<double>(scan.range_min);
+      seen.longest_m = static_cast<double>(scan.range_max);
     });
     taken += clouds.take([&](const cloud_message& cloud) { read(cloud, seen); });
     return taken >= 12 && seen.longest_m;

@@ -41,9 +41,10 @@ struct outcome {
   std::optional<double> longest_m{};
   std::vector<hit> hits{};
 
-  void add(double x_m, double y_m, unsigned intensity = 0) {
-    hits.push_back(
-        {std::atan2(y_m, x_m) * 180 / std::numbers::pi, std::hypot(x_m, y_m), intensity});
+  void add(float x_m, float y_m, unsigned intensity = 0) {
+    const auto x = static_cast<double>(x_m);
+    const auto y = static_cast<double>(y_m);
+    hits.push_back({std::atan2(y, x) * 180 / std::numbers::pi, std::hypot(x, y), intensity});
   }
 };
 
@@ -165,7 +166,8 @@ inline void check(const json& of, const std::string& door, const outcome& seen) 
   }
   ASSERT_EQ(seen.error, "") << seen.words;
   const json& want = of.at("expect");
-  check_one(want, "model", door, seen.model, [&](auto& is) { EXPECT_EQ(is, want["model"]); });
+  check_one(want, "model", door, seen.model,
+            [&](auto& is) { EXPECT_EQ(is, want["model"].get<std::string>()); });
   check_one(want, "samples", door, seen.samples, [&](double is) {
     EXPECT_NEAR(is, want["samples"], 0.01 * want["samples"].get<double>() + 2);
   });
