@@ -80,7 +80,7 @@ inline std::string name_in_test(const testing::TestParamInfo<json>& of) {
   return of.param.at("name");
 }
 
-/// The words of a command line: an option of the table is named as `flag` says.
+/// The words of a command line; `flag` gives the name that an option of the table has there.
 template <class Flag>
 std::vector<std::string> words_of(const json& of, const Flag& flag) {
   std::vector<std::string> words;
