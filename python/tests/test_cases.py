@@ -12,9 +12,9 @@ import pytest
 
 import g4lidar
 
-DIRECTORY = Path(__file__).parents[2] / "tests" / "cases"
-FILE = DIRECTORY / "cases.json"
-TABLE: dict[str, Any] = json.loads(FILE.read_text(encoding="utf-8")) if FILE.exists() else {"cases": []}
+HERE = Path(__file__).parent  # or a copy of it, with the table in it
+DIRECTORY = HERE / "cases" if (HERE / "cases").exists() else HERE.parents[1] / "tests" / "cases"
+TABLE: dict[str, Any] = json.loads((DIRECTORY / "cases.json").read_text(encoding="utf-8"))
 KEYWORDS = {"frequency": "frequency_hz", "sample_rate": "sample_rate_hz"}
 FILTERS = ("ignore", "fov", "range", "mask", "speckle", "edges")
 
