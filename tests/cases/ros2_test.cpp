@@ -64,7 +64,10 @@ TEST_P(Ros2, DoesIt) {
       seen.longest_m = static_cast<double>(scan.range_max);
     });
     taken += clouds.take([&](const cloud_message& cloud) { read(cloud, seen); });
-    return taken >= 12 && seen.longest_m;
+    // A message does not state whether its revolution is whole: a busy machine loses bytes.
+    const double samples = GetParam().at("expect").value("samples", seen.samples.value_or(0));
+    return taken >= 12 && seen.longest_m &&
+           std::fabs(*seen.samples - samples) <= 2 + 0.01 * samples;
   }));
   tool.send(SIGTERM);
   EXPECT_EQ(tool.wait().code, 128 + SIGTERM);
