@@ -25,18 +25,17 @@ namespace g4lidar {
 namespace {
 
 // libudev is loaded when ports are first looked for, so that all else works where it is not installed.
-#define G4LIDAR_UDEV_FUNCTIONS(each)                                                               \
-  each(udev_new) each(udev_unref) each(udev_device_get_action) each(udev_device_get_devnode)       \
-      each(udev_device_get_driver) each(udev_device_get_parent) each(                              \
-          udev_device_get_parent_with_subsystem_devtype) each(udev_device_get_sysattr_value)       \
-          each(udev_device_get_sysname) each(udev_device_new_from_syspath) each(udev_device_unref) \
-              each(udev_enumerate_add_match_subsystem) each(udev_enumerate_get_list_entry)         \
-                  each(udev_enumerate_new) each(udev_enumerate_scan_devices)                       \
-                      each(udev_enumerate_unref) each(udev_list_entry_get_name)                    \
-                          each(udev_list_entry_get_next) each(udev_monitor_enable_receiving)       \
-                              each(udev_monitor_filter_add_match_subsystem_devtype)                \
-                                  each(udev_monitor_get_fd) each(udev_monitor_new_from_netlink)    \
-                                      each(udev_monitor_receive_device) each(udev_monitor_unref)
+// clang-format off
+#define G4LIDAR_UDEV_FUNCTIONS(each) \
+  each(udev_new) each(udev_unref) each(udev_device_get_action) each(udev_device_get_devnode) \
+  each(udev_device_get_driver) each(udev_device_get_parent) each(udev_device_get_parent_with_subsystem_devtype) \
+  each(udev_device_get_sysattr_value) each(udev_device_get_sysname) each(udev_device_new_from_syspath) \
+  each(udev_device_unref) each(udev_enumerate_add_match_subsystem) each(udev_enumerate_get_list_entry) \
+  each(udev_enumerate_new) each(udev_enumerate_scan_devices) each(udev_enumerate_unref) \
+  each(udev_list_entry_get_name) each(udev_list_entry_get_next) each(udev_monitor_enable_receiving) \
+  each(udev_monitor_filter_add_match_subsystem_devtype) each(udev_monitor_get_fd) \
+  each(udev_monitor_new_from_netlink) each(udev_monitor_receive_device) each(udev_monitor_unref)
+// clang-format on
 #define G4LIDAR_DECLARE(name) decltype(&::name) name = nullptr;
 G4LIDAR_UDEV_FUNCTIONS(G4LIDAR_DECLARE)
 
