@@ -42,22 +42,20 @@ unpack_source() {
 
 # build_portable <processor>: the programs, in $work/<processor>/root.
 build_portable() {
-  local processor=$1 build=$work/$1 inputs=$PWD/build/sysroot/portable-$1 include=() cross=()
+  local processor=$1 build=$work/$1 inputs=$PWD/build/sysroot/portable-$1 include=()
   run_quietly "Getting the libraries for $processor" scripts/sysroot "portable-$processor"
   make_compiler "$processor" "$build/compiler"
   include=(-isystem "$inputs/usr/include/$processor-linux-gnu" -isystem "$inputs/usr/include")
-  if [[ $processor != "$(uname -m)" ]]; then
-    cross=(-DCMAKE_SYSTEM_NAME=Linux "-DCMAKE_SYSTEM_PROCESSOR=$processor")
-  fi
   (
     export CCACHE_COMPILERCHECK="string:zig $zig_version $processor $glibc" CCACHE_BASEDIR=$PWD
     cd "$work/source" || exit
-    configure "$build/build" "${cross[@]}" -DCMAKE_BUILD_TYPE=Release -DG4LIDAR_UNITE=ON -DG4LIDAR_DEVICE=ON \
+    configure "$build/build" -DCMAKE_BUILD_TYPE=Release -DG4LIDAR_UNITE=ON -DG4LIDAR_DEVICE=ON \
       -DG4LIDAR_BUILD_TOOLS=ON -DG4LIDAR_BUILD_SERVE=ON -DG4LIDAR_BUILD_ROS2=OFF -DG4LIDAR_BUILD_C=OFF \
       -DG4LIDAR_BUILD_TESTS=OFF -DG4LIDAR_BUILD_FUZZ=OFF -DG4LIDAR_BUILD_EXAMPLES=OFF -DG4LIDAR_INSTALL=ON \
       -DG4LIDAR_INSTALL_UDEV_RULE=ON "-DCMAKE_C_COMPILER=$build/compiler/clang" \
       "-DCMAKE_CXX_COMPILER=$build/compiler/clang++" "-DCMAKE_AR=$build/compiler/ar" \
-      "-DCMAKE_RANLIB=$build/compiler/ranlib" "-DCMAKE_CXX_FLAGS=${include[*]} -ffile-prefix-map=$PWD=. -s" \
+      "-DCMAKE_RANLIB=$build/compiler/ranlib" "-DCMAKE_CXX_FLAGS=${include[*]} -ffile-prefix-map=$CCACHE_BASEDIR=. -s" \
+      "-DCMAKE_EXE_LINKER_FLAGS=-L$inputs/usr/lib/$processor-linux-gnu" \
       "-DCMAKE_FIND_ROOT_PATH=$inputs" -DCMAKE_FIND_ROOT_PATH_MODE_INCLUDE=ONLY \
       -DCMAKE_FIND_ROOT_PATH_MODE_LIBRARY=ONLY -DCMAKE_FIND_ROOT_PATH_MODE_PACKAGE=ONLY \
       "-DCMAKE_LIBRARY_ARCHITECTURE=$processor-linux-gnu" "-Dfmt_DIR=$work/source/packaging/portable"
@@ -111,13 +109,9 @@ check_no_addresses() {
   fi
 }
 
-# make_portable <processor> <version> <directory>: the archive, in that directory. Man pages do not depend on the
-# processor: the programs of this one print them.
+# make_portable <processor> <version> <directory>: the archive, in that directory.
 make_portable() {
-  local processor=$1 name=g4lidar-$2-linux-$1 root=$work/$1/root to=$work/$1/archive/ this own
-  this=$(uname -m)
-  own=$work/$this/root
-  if [[ $processor != "$this" && ! -e $own/share/man ]]; then build_portable "$this"; fi
+  local processor=$1 name=g4lidar-$2-linux-$1 root=$work/$1/root to=$work/$1/archive/
   build_portable "$processor"
   rm -rf "$to"
   mkdir -p "$to/$name/share"
@@ -125,7 +119,7 @@ make_portable() {
   cp -r "$root/bin" "$to"
   mkdir -p "$to/lib"
   cp -r "$root/lib/udev" "$to/lib"
-  cp -r "$own/share/man" "$root"/share/{bash-completion,fish,zsh} "$to/share"
+  cp -r "$root"/share/{bash-completion,fish,man,zsh} "$to/share"
   cp "$work"/source/packaging/portable/{install.sh,README.md} "$work/source/LICENSE" "$to"
   write_licences "$processor" "$to/licenses"
   check_programs "$to"/bin/*

@@ -31,24 +31,33 @@ apply_rules() {
   fi
 }
 
+# make_directory <directory>: those that did not exist are in the list, with a slash at the end.
+make_directory() {
+  if [ ! -d "$1" ]; then
+    make_directory "$(dirname "$1")"
+    mkdir "$1"
+    echo "$1/" >>"$new"
+  fi
+}
+
 # Also before an installation: an older one may have files that this one has not.
 remove() {
-  while IFS= read -r file; do
+  grep -v '/$' "$list" | while IFS= read -r file; do
     echo "remove $file"
     rm -f "$file"
-    directory=$(dirname "$file")
-    while [ "$directory" != "$prefix" ] && rmdir "$directory" 2>/dev/null; do directory=$(dirname "$directory"); done
-  done <"$list"
+  done
+  made=$(grep '/$' "$list" | sort -r)
   rm -f "$list"
-  rmdir "$prefix/share/g4lidar" 2>/dev/null || true
+  echo "$made" | while IFS= read -r directory; do rmdir "$directory" 2>/dev/null || true; done
 }
 
 if [ "$uninstall" ] && [ ! -e "$list" ]; then
   echo "Nothing is installed below $prefix ($list does not exist)" >&2
   exit 1
 fi
-mkdir -p "$prefix" 2>/dev/null || true
-if [ ! -w "$prefix" ]; then
+new=$(mktemp)
+trap 'rm -f "$new"' EXIT
+if ! make_directory "$prefix" 2>/dev/null || [ ! -w "$prefix" ]; then
   echo "No permission to write to $prefix: use sudo, or another PREFIX, such as $HOME/.local" >&2
   exit 1
 fi
@@ -58,7 +67,7 @@ if [ "$uninstall" ]; then
   exit 0
 fi
 
-mkdir -p "$prefix/share/g4lidar"
+make_directory "$prefix/share/g4lidar"
 rules=yes
 case $prefix in /usr | /usr/local) ;; *) rules= ;; esac
 (cd "$here" && find bin share lib licenses -type f | sort) | while IFS= read -r file; do
@@ -68,12 +77,13 @@ case $prefix in /usr | /usr/local) ;; *) rules= ;; esac
     licenses/*) target=$prefix/share/doc/g4lidar/$file ;;
   esac
   echo "install $target"
-  mkdir -p "$(dirname "$target")"
+  make_directory "$(dirname "$target")"
   cp "$here/$file" "$target.new"
   chmod "$(case $file in bin/*) echo 755 ;; *) echo 644 ;; esac)" "$target.new"
   mv "$target.new" "$target" # a program that runs keeps its old file
-  echo "$target" >>"$list"
+  echo "$target" >>"$new"
 done
+cp "$new" "$list"
 if [ "$rules" ]; then
   apply_rules
 else
