@@ -15,10 +15,10 @@
 #include "printable_text.hpp"
 
 // Of glibc 2.32 and later; thread-safe and independent of the locale, unlike strerror.
-extern "C" {
+extern "C" {  // NOLINTBEGIN(readability-redundant-declaration): they are weak
 [[gnu::weak]] const char* strerrorname_np(int) noexcept;
 [[gnu::weak]] const char* strerrordesc_np(int) noexcept;
-}
+}  // NOLINTEND(readability-redundant-declaration)
 
 namespace g4lidar {
 namespace {

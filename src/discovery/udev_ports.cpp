@@ -35,8 +35,8 @@ namespace {
   each(udev_list_entry_get_name) each(udev_list_entry_get_next) each(udev_monitor_enable_receiving) \
   each(udev_monitor_filter_add_match_subsystem_devtype) each(udev_monitor_get_fd) \
   each(udev_monitor_new_from_netlink) each(udev_monitor_receive_device) each(udev_monitor_unref)
+#define G4LIDAR_DECLARE(name) decltype(&::name) name = nullptr;  // NOLINT(bugprone-macro-parentheses): declared
 // clang-format on
-#define G4LIDAR_DECLARE(name) decltype(&::name) name = nullptr;
 G4LIDAR_UDEV_FUNCTIONS(G4LIDAR_DECLARE)
 
 /// False if there is no libudev. A program that has these functions itself, such as a test, keeps its own.
@@ -44,9 +44,9 @@ bool has_udev() noexcept {
   static const bool is_loaded = [] {
     ::dlopen("libudev.so.1", RTLD_NOW | RTLD_GLOBAL);
     bool has_all = true;
-#define G4LIDAR_FIND(name)                                                                        \
-  has_all = (name = reinterpret_cast<decltype(name)>(::dlsym(RTLD_DEFAULT, #name))) != nullptr && \
-            has_all;
+#define G4LIDAR_FIND(name)                                                 \
+  (name) = reinterpret_cast<decltype(name)>(::dlsym(RTLD_DEFAULT, #name)); \
+  has_all = has_all && (name) != nullptr;
     G4LIDAR_UDEV_FUNCTIONS(G4LIDAR_FIND)
     return has_all;
   }();

@@ -58,6 +58,7 @@ lidar_publisher::lidar_publisher(dds::bus& bus, const ros2_options& options,
     };
   }
   std::vector<service_lidar> read;
+  read.reserve(lidars.size());
   for (std::size_t i = 0; i < lidars.size(); ++i)
     read.push_back(lidar_of(options, options_of(i), options.merges ? lidars[i].name : ""));
   service_ = make_service(std::move(read), std::move(all), {{this, g4lidar::delivery::in_reader}});

@@ -28,7 +28,7 @@ namespace {
 constexpr auto recorded_time = std::chrono::seconds(10);
 
 /// `path`, if it can be the text of a report.
-const std::string& text_path(const std::string& path) {
+std::string text_path(const std::string& path) {
   if (path != "-" && !path.ends_with(".mcap")) return path;
   throw bad_value("--report: " + in_quotes(path) +
                   " cannot be the text of a report; its recording is put beside it");
