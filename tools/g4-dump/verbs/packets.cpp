@@ -60,7 +60,8 @@ void list_bytes(const packets_options& options) {
           {.take = [&](std::span<const std::uint8_t> got) { log.from_device(got, 0); },
            .is_done = [&] { return log.is_done(); }},
           common);
-  if (log.bytes_from_device() == 0 && in.is_file()) throw without_packets({}, 0, {}, in.title());
+  if (log.bytes_from_device() == 0 && in.is_file() && interrupt() == 0)
+    throw without_packets({}, 0, {}, in.title());
   end(log, out);
 }
 
