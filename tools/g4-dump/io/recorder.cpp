@@ -68,8 +68,7 @@ class recorder {
   /// Creates the file before the source is opened, because opening is recorded, too.
   void open() {
     const std::string& source = job_.common.source;
-    if (kind_of_source(source) == source_kind::raw_bytes &&
-        size_of_file(path_of_source(source)) == 0U)
+    if (size_of_file(path_of_source(source)) == 0U)
       throw without_packets({}, 0, {}, title_of_input(source));
     if (job_.title.empty()) claim_.emplace(job_.path);
     recording_options made = job_.made;
