@@ -63,11 +63,6 @@ inline std::vector<expected_point> points_in(const std::string& bytes) {
   return points;
 }
 
-/// The time of a sample that is counted from the first one, at 9000 a second.
-inline std::int64_t counted_time_ns(std::size_t index) {
-  return static_cast<std::int64_t>(index * 1'000'000'000U / 9000U);
-}
-
 /// A row of csv.
 struct row {
   std::uint64_t scan = 0;
@@ -98,10 +93,6 @@ inline void expect_points(const std::vector<row>& rows, const std::vector<expect
     ASSERT_EQ(rows[i].range, wanted[i].range_mm) << i;
     ASSERT_LT(std::abs(std::remainder(rows[i].angle_deg - wanted[i].angle_deg, 360.0)), 1e-4) << i;
   }
-}
-
-inline void expect_counted_times(const std::vector<row>& rows) {
-  for (std::size_t i = 0; i < rows.size(); ++i) ASSERT_EQ(rows[i].time_ns, counted_time_ns(i));
 }
 
 }  // namespace cli

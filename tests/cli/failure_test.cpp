@@ -2,10 +2,10 @@
 // What goes wrong: one clear sentence, the right exit code, and nothing half-written.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <cstdint>
 #include <filesystem>
 #include <sstream>
 #include <string>
@@ -18,6 +18,7 @@ namespace {
 
 using cli::outcome;
 using cli::run;
+using cli::run_on_full_disk;
 using cli::stream;
 using ::testing::EndsWith;
 using ::testing::HasSubstr;
@@ -40,15 +41,16 @@ class Failure : public cli::scratch {
     return path("good.bin");
   }
   // Runs it with -o out.csv twice, without and with an older file there: neither may change.
-  void expect_nothing_written(std::vector<std::string> arguments) {
+  void expect_nothing_written(std::vector<std::string> arguments,
+                              std::uint64_t most_bytes = UINT64_MAX) {
     const std::string out = path("out.csv");
     arguments.insert(arguments.end(), {"-o", out});
     const std::string before = listing();
-    EXPECT_NE(run(arguments).code, 0);
+    EXPECT_NE(run_on_full_disk(most_bytes, arguments).code, 0);
     EXPECT_EQ(listing(), before);
     cli::write_file(out, "older\n");
     const std::string with_older = listing();
-    EXPECT_NE(run(arguments).code, 0);
+    EXPECT_NE(run_on_full_disk(most_bytes, arguments).code, 0);
     EXPECT_EQ(listing(), with_older);
     EXPECT_EQ(cli::read_file(out), "older\n");
   }
@@ -163,7 +165,11 @@ TEST_F(Failure, StandardOutputIsFull) {
   for (const std::vector<std::string>& arguments :
        {std::vector<std::string>{"decode", good()},
         {"sim", "--seconds", "1"},
-        {"sim", "--seconds", "1", "-o", path("x"), "--truth", "-"}}) {
+        {"sim", "--seconds", "1", "-o", path("x"), "--truth", "-"},
+        {"--help"},
+        {"--version"},
+        {"help"},
+        {"scan", "--help"}}) {
     cli::program started(arguments, {{}, stream::of_file("/dev/full"), {}});
     expect_sentence(started.wait(), 10,
                     "cannot write standard output: No space left on device. Free some space");
@@ -178,30 +184,13 @@ TEST_F(Failure, FullDevice) {
   EXPECT_EQ(run({"decode", good(), "-o", "/dev/null"}).code, 0);
 }
 
-// While it exists, no file may grow beyond so many bytes.
-class file_size_limit {
- public:
-  explicit file_size_limit(rlim_t bytes) {
-    ::getrlimit(RLIMIT_FSIZE, &before_);
-    const rlimit limit{bytes, before_.rlim_max};
-    ::setrlimit(RLIMIT_FSIZE, &limit);
-  }
-  file_size_limit(const file_size_limit&) = delete;
-  file_size_limit& operator=(const file_size_limit&) = delete;
-  ~file_size_limit() { ::setrlimit(RLIMIT_FSIZE, &before_); }
-
- private:
-  rlimit before_{};
-};
-
 TEST_F(Failure, FileThatCannotGrow_IsRemoved) {
   const std::string name = path("good.bin");
   cli::write_repeated(name, cli::zero(0) + cli::turn(), 100'000);
-  const file_size_limit limit(1000);
-  expect_sentence(run({"decode", name, "-o", path("out.csv")}), 10,
+  expect_sentence(run_on_full_disk(1000, {"decode", name, "-o", path("out.csv")}), 10,
                   "File too large. Free some space");
-  expect_nothing_written({"decode", name});
-  expect_nothing_written({"sim", "--seconds", "5"});
+  expect_nothing_written({"decode", name}, 1000);
+  expect_nothing_written({"sim", "--seconds", "5"}, 1000);
 }
 
 TEST_F(Failure, OutputHasNoDirectory) {

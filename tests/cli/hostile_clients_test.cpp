@@ -17,7 +17,6 @@
 #include <string>
 #include <string_view>
 #include <thread>
-#include <utility>
 #include <vector>
 
 #include "program.hpp"
@@ -84,7 +83,7 @@ class HostileClient : public cli::scratch {
       return output.ends_with('\n');
     }));
     const std::size_t colon = output.rfind(':');
-    ASSERT_NE(colon, std::string::npos) << output;
+    ASSERT_TRUE(output.starts_with("G4 2021101000070073 at tcp:127.0.0.1:")) << output;
     port_ = static_cast<std::uint16_t>(std::stoi(output.substr(colon + 1)));
   }
 

@@ -28,17 +28,20 @@ class InterruptedFile : public cli::scratch, public ::testing::WithParamInterfac
     if (words[0] == "record") words.push_back(path("out.mcap"));
     return words;
   }
+  void expect_end_of(const std::string& file) const {
+    cli::program reading(command(file));
+    std::this_thread::sleep_for(1s);
+    reading.send(SIGTERM);
+    const auto begin = std::chrono::steady_clock::now();
+    const auto ended = reading.wait();
+    EXPECT_LT(std::chrono::steady_clock::now() - begin, 20s);
+    EXPECT_EQ(ended.code == -1 ? -ended.signal : ended.code, 128 + SIGTERM) << ended.err;
+  }
 };
 
 TEST_P(InterruptedFile, ObeysASignal) {
   cli::write_file(path("slow.mcap"), slow_mcap());
-  cli::program reading(command(path("slow.mcap")));  // it needs a minute
-  std::this_thread::sleep_for(1s);
-  reading.send(SIGTERM);
-  const auto begin = std::chrono::steady_clock::now();
-  const auto ended = reading.wait();
-  EXPECT_LT(std::chrono::steady_clock::now() - begin, 20s);
-  EXPECT_EQ(ended.code == -1 ? -ended.signal : ended.code, 128 + SIGTERM) << ended.err;
+  expect_end_of(path("slow.mcap"));  // it needs a minute
 }
 
 TEST_P(InterruptedFile, FileOfZerosThatUnpacksToMuch_EndsByItself) {
@@ -55,13 +58,7 @@ TEST_P(InterruptedFile, LargeFileWithoutPackets_ObeysASignal) {
   if (command_name == "replay" || command_name == "info") return;  // they refuse raw bytes
   cli::write_file(path("zeros.bin"), "");
   std::filesystem::resize_file(path("zeros.bin"), std::uintmax_t{1} << 38U);
-  cli::program reading(command(path("zeros.bin")));  // it needs hours
-  std::this_thread::sleep_for(1s);
-  reading.send(SIGTERM);
-  const auto begin = std::chrono::steady_clock::now();
-  const auto ended = reading.wait();
-  EXPECT_LT(std::chrono::steady_clock::now() - begin, 20s);
-  EXPECT_EQ(ended.code == -1 ? -ended.signal : ended.code, 128 + SIGTERM) << ended.err;
+  expect_end_of(path("zeros.bin"));  // it needs hours
 }
 
 INSTANTIATE_TEST_SUITE_P(Commands, InterruptedFile,

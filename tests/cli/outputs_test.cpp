@@ -3,12 +3,10 @@
 // there is something to write; and nothing of it remains on a full disk.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 
 #include <algorithm>
 #include <filesystem>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "program.hpp"
@@ -19,8 +17,10 @@ namespace {
 using cli::outcome;
 using cli::record_scans;
 using cli::run;
+using cli::run_on_full_disk;
 using cli::stream;
 using ::testing::HasSubstr;
+using ::testing::Not;
 using words = std::vector<std::string>;
 namespace fs = std::filesystem;
 
@@ -30,17 +30,6 @@ constexpr const char* room = "wall 2 2 -2 2\nwall -2 2 -2 -2\nwall -2 -2 2 -2\nw
 words joined(words one, const words& more) {
   one.insert(one.end(), more.begin(), more.end());
   return one;
-}
-
-/// Runs it where files have at most so many bytes.
-outcome run_on_full_disk(rlim_t bytes, const words& line) {
-  rlimit before{};
-  ::getrlimit(RLIMIT_FSIZE, &before);
-  const rlimit limit{bytes, before.rlim_max};
-  ::setrlimit(RLIMIT_FSIZE, &limit);
-  const outcome done = run(line);
-  ::setrlimit(RLIMIT_FSIZE, &before);
-  return done;
 }
 
 class Outputs : public cli::scratch_here {
@@ -229,6 +218,20 @@ TEST_F(Outputs, ExistingFile_IsReplacedOnRequestOnly) {
   }
 }
 
+TEST_F(Outputs, ExistingFileOfConvert_IsReplacedOnRequestOnly) {
+  for (const std::string name : {"o.mcap", "o.bin", "o.csv", "o.npy", "o.carmen", "o-0001.pcd"}) {
+    cli::write_file(name, "dear");
+    const words line{"convert", "walk.bin", name == "o-0001.pcd" ? "o-%04d.pcd" : name};
+    const outcome refused = run(line);
+    EXPECT_EQ(refused.code, 10) << name;
+    EXPECT_THAT(refused.err,
+                HasSubstr(name + "': it exists already. Give another name, or --force"));
+    EXPECT_EQ(cli::read_file(name), "dear");
+    EXPECT_EQ(run(joined(line, {"--force"})).code, 0) << name;
+    EXPECT_GT(fs::file_size(name), 1000U) << name;
+  }
+}
+
 // No verb is left out above.
 TEST_F(Outputs, EachVerbThatWritesIsTried) {
   std::vector<std::string> tried;
@@ -302,13 +305,14 @@ TEST_F(Outputs, OnAFullDisk_ARecordingReplacesNothing) {
   cli::write_file("old.mcap", "dear");
   const std::size_t before = static_cast<std::size_t>(
       std::distance(fs::directory_iterator("."), fs::directory_iterator()));
-  for (const rlim_t bytes : {rlim_t{10}, rlim_t{700}}) {
+  for (const std::uint64_t bytes : {10U, 700U}) {
     for (const words& line : {words{"record", "sim:", "-n", "1", "-o"},
                               {"record", "walk.mcap", "-o"},
                               {"acceptance", "--alone", "-d", "1s", "sim:", "--file"}}) {
       const outcome done = run_on_full_disk(bytes, joined(line, {"old.mcap", "--force"}));
       EXPECT_EQ(done.code, 10) << line[0] << bytes << done.err;
       EXPECT_THAT(done.err, HasSubstr("cannot write 'old.mcap': File too large. Free some space"));
+      EXPECT_THAT(done.err, Not(HasSubstr("can be read")));
       EXPECT_EQ(cli::read_file("old.mcap"), "dear") << line[0] << bytes;
       EXPECT_EQ(run_on_full_disk(bytes, joined(line, {"new.mcap"})).code, 10) << line[0] << bytes;
       EXPECT_FALSE(fs::exists("new.mcap")) << line[0] << bytes;
@@ -325,6 +329,8 @@ TEST_F(Outputs, OnAFullDisk_NothingOfItRemains) {
       const outcome done = run_on_full_disk(3'000, {"convert", from, name});
       EXPECT_EQ(done.code, 10) << from << " to " << name << done.err;
       EXPECT_THAT(done.err, HasSubstr("File too large. Free some space"));
+      EXPECT_THAT(done.err, Not(HasSubstr("can be read")));
+      EXPECT_THAT(done.err, Not(HasSubstr("digest"))) << "there is no file that has it";
       EXPECT_FALSE(fs::exists(name)) << from << " to " << name;
     }
   }

@@ -188,6 +188,16 @@ outcome run(const std::vector<std::string>& arguments, std::string_view input) {
   return started.wait();
 }
 
+outcome run_on_full_disk(std::uint64_t bytes, const std::vector<std::string>& arguments) {
+  rlimit before{};
+  ::getrlimit(RLIMIT_FSIZE, &before);
+  const rlimit limit{bytes, before.rlim_max};
+  ::setrlimit(RLIMIT_FSIZE, &limit);
+  const outcome done = run(arguments);
+  ::setrlimit(RLIMIT_FSIZE, &before);
+  return done;
+}
+
 scratch::scratch() {
   std::string name = std::filesystem::temp_directory_path() / "g4-dump-test-XXXXXX";
   if (::mkdtemp(name.data()) == nullptr) give_up("no scratch directory");

@@ -80,6 +80,10 @@ class program {
 /// Runs it to its end, `input` on its standard input.
 [[nodiscard]] outcome run(const std::vector<std::string>& arguments, std::string_view input = {});
 
+/// The same where files have at most so many bytes.
+[[nodiscard]] outcome run_on_full_disk(std::uint64_t bytes,
+                                       const std::vector<std::string>& arguments);
+
 /// A directory of its own for each test, gone behind it.
 class scratch : public ::testing::Test {
  protected:

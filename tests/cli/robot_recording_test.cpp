@@ -3,7 +3,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
@@ -94,40 +93,6 @@ TEST_F(RobotRecording, Convert_HasTheOdometryOfTheFile) {
                 1e-6);
   }
   EXPECT_EQ(run({"replay", "--verify", path("way.mcap")}).code, 0);
-}
-
-/// The stamps of scans and of odometry are of one clock: as far apart as the true times.
-TEST_F(RobotRecording, StampsOfScansAndOdometry_AreOfOneClock) {
-  expect_good({"convert", path("way.bin"), path("way.mcap"), "--odometry", path("way.odo")});
-  std::vector<std::int64_t> begins;  // of each revolution
-  std::string revolution = "none";
-  for (const std::string& line : cli::lines_of(read_file(path("way.csv")))) {
-    std::istringstream row(line);
-    std::string index;
-    std::string time;
-    std::string scan;
-    std::getline(std::getline(std::getline(row, index, ','), time, ','), scan, ',');
-    if (index == "index" || scan == revolution) continue;
-    revolution = scan;
-    begins.push_back(std::stoll(time));
-  }
-  const std::string file = read_file(path("way.mcap"));
-  const auto stamp_of = [](const std::vector<std::uint8_t>& message) {
-    cdr_reader read(message);
-    const std::int64_t seconds = read.number<std::int32_t>();
-    return seconds * 1'000'000'000 + read.number<std::uint32_t>();
-  };
-  const auto scans = mcap_messages(file, "/scan");
-  const std::int64_t first_pose_ns = stamp_of(mcap_messages(file, "/odom").front());
-  ASSERT_GE(scans.size(), 15U);
-  for (const auto& scan : scans) {
-    const std::int64_t since_ns = stamp_of(scan) - first_pose_ns + lines("way.odo")[0].time_ns;
-    const bool is_there = std::ranges::any_of(begins, [since_ns](std::int64_t begin_of_one_ns) {
-      return std::abs(begin_of_one_ns - since_ns) <
-             500'000;  // the times of raw bytes are estimated
-    });
-    EXPECT_TRUE(is_there) << since_ns;
-  }
 }
 
 TEST_F(RobotRecording, RecordedAgain_KeepsTheOdometry) {

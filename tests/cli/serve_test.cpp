@@ -128,6 +128,7 @@ TEST_F(Serve, InvalidOptions_AreRefused) {
   refused({"sim", "--serial", "1111222233334444"}, "--link");
   refused({"sim", "--log"}, "--link");
   refused({"sim", "--link", link, "--samples", "81"}, "1 to 80");
+  refused({"sim", "--tcp", "70000"}, "'70000' is not PORT or ADDRESS:PORT");
   EXPECT_EQ(listing(), "");
 }
 
@@ -150,26 +151,6 @@ TEST_F(Serve, LinkOfARunningDevice_IsNotReplaced) {
   EXPECT_TRUE(comes_true([&] {
     return run({"info", path("lidar")}).out.find("1234567890123456") != std::string::npos;
   })) << "a link that leads nowhere is replaced";
-}
-
-TEST_F(Serve, ANetworkBridge) {
-  cli::program bridge({"sim", "--tcp", "0"}, {{}, {}, cli::stream::of_file(path("err"))});
-  std::string output;
-  static_cast<void>(comes_true([&] {
-    if (fs::exists(path("err"))) output = cli::read_file(path("err"));
-    return output.ends_with('\n');
-  }));
-  ASSERT_THAT(output, StartsWith("G4 2021101000070073 at tcp:127.0.0.1:"));
-  const std::string source =
-      output.substr(output.find("tcp:"), output.size() - output.find("tcp:") - 1);
-  const outcome info = run({"info", source});
-  EXPECT_EQ(info.code, 0) << info.err;
-  EXPECT_THAT(info.out, HasSubstr("serial      2021101000070073\n"));
-  // The next client gets it as new.
-  const outcome points = run({"dump", source, "-n", "500", "-f", "csv"});
-  EXPECT_EQ(points.code, 0) << points.err;
-  EXPECT_EQ(cli::lines_of(points.out).size(), 501U);
-  refused({"sim", "--tcp", "70000"}, "'70000' is not PORT or ADDRESS:PORT");
 }
 
 TEST_F(Serve, ARegisteredDeviceIsDiscovered) {

@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "program.hpp"
@@ -18,7 +19,6 @@ using cli::lines_of;
 using cli::outcome;
 using cli::run;
 using nlohmann::json;
-using ::testing::AllOf;
 using ::testing::ContainsRegex;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
@@ -215,16 +215,13 @@ TEST_F(Talk, ScanningDevice_IsStoppedAndReported) {
               HasSubstr(": was scanning and has been stopped\n"));
 }
 
-TEST_F(Talk, Start_TooLittlePower) {
-  const outcome done = run({"start", "sim:?fault=brown_out"});
-  EXPECT_EQ(done.code, 8);
-  EXPECT_THAT(done.err, HasSubstr("too little power"));
-}
-
-TEST_F(Talk, Start_DefectiveDevice_IsNotStarted) {
-  const outcome done = run({"start", "sim:?fault=health=error"});
-  EXPECT_EQ(done.code, 8);
-  EXPECT_THAT(done.err, HasSubstr("reports that it is defective"));
+TEST_F(Talk, Start_OfADeviceThatCannot_IsAnError) {
+  for (const auto& [fault, why] : {std::pair{"brown_out", "too little power"},
+                                   {"health=error", "reports that it is defective"}}) {
+    const outcome done = run({"start", std::string("sim:?fault=") + fault});
+    EXPECT_EQ(done.code, 8);
+    EXPECT_THAT(done.err, HasSubstr(why));
+  }
 }
 
 TEST_F(Talk, Restart_WaitsUntilItAnswersAgain) {

@@ -87,20 +87,31 @@ TEST_F(ZeroAngleOption, WhereItIsMissing_ALineReportsIt) {
 }
 
 TEST_F(ZeroAngleOption, WhereItHasNoMeaning_IsRefused) {
+  ASSERT_EQ(run({"sim", "--model", "tg15", "--seconds", "1", "-o", path("tg.bin")}).code, 0);
+  convert("tg.bin", "tg.mcap", {"--model", "tg15"});
   const std::string raw = path("g4.bin");
   ASSERT_EQ(run({"sim", "--seconds", "1", "-o", raw}).code, 0);
   const auto expect_refused = [](const std::vector<std::string>& words, const std::string& why) {
     const outcome done = run(words);
-    EXPECT_NE(done.code, 0) << words[0];
+    EXPECT_EQ(done.code, 2) << words[0];
     EXPECT_THAT(done.err, HasSubstr(why));
     EXPECT_EQ(done.out, "");
   };
   expect_refused({"decode", raw, "--zero-angle", "10"}, "a G4 has no such offset");
   expect_refused({"dump", "sim:", "--zero-angle", "10"}, "zero_angle");
+  // Where a verb only prints what is in a file, an offset has no effect.
+  for (std::vector<std::string> words :
+       std::vector<std::vector<std::string>>{{"packets", path("tg.bin"), "--model", "tg15"},
+                                             {"packets", path("tg.mcap")},
+                                             {"info", path("tg.mcap")}}) {
+    EXPECT_EQ(run(words).code, 0);
+    words.insert(words.end(), {"--zero-angle", "90"});
+    expect_refused(words, "it is for g4-dump dump, scan and convert");
+  }
   expect_refused({"decode", raw, "--zero-angle", "361"}, "361");
   expect_refused({"convert", raw, path("out.bin"), "--zero-angle", "10"},
                  "the bytes stay as they are");
-  EXPECT_EQ(listing(), "g4.bin\n");
+  EXPECT_EQ(listing(), "g4.bin\ntg.bin\ntg.mcap\n");
 }
 
 }  // namespace
