@@ -1,17 +1,15 @@
 // SPDX-License-Identifier: MIT
-// Several lidars as one scan: where their points are, which lidar each point is of, and requests to one of them.
+// Several lidars as one scan: where their points are, their recordings, and requests to one of them.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
 #include <functional>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,43 +30,11 @@ struct place {
   double y;
 };
 
-/// A message of a revolution, by docs/serve.md.
-struct revolution {
-  std::vector<place> points;
-  std::vector<std::size_t> of_each{};  // so many points are of each lidar
-  std::optional<std::array<double, 3>> pose{};
-};
-
 template <class Number>
 Number number_at(const std::string& data, std::size_t at) {
   Number value{};
   std::memcpy(&value, data.substr(at, sizeof(value)).data(), sizeof(value));
   return value;
-}
-
-std::optional<revolution> revolution_of(const std::string& data) {
-  if (!data.starts_with('\x10')) return std::nullopt;
-  revolution made;
-  const auto flags = static_cast<unsigned char>(data.at(1));
-  std::size_t at = 16;
-  for (int left = number_at<std::uint16_t>(data, 2); left > 0; --left, at += 8) {
-    made.points.push_back({static_cast<double>(number_at<float>(data, at)),
-                           static_cast<double>(number_at<float>(data, at + 4))});
-  }
-  if ((flags & 2U) != 0) {
-    made.pose = {number_at<double>(data, at + 4), number_at<double>(data, at + 12),
-                 number_at<double>(data, at + 20)};
-    at += 28;
-  }
-  if ((flags & 4U) != 0) {
-    const int lidars = number_at<std::uint16_t>(data, at);
-    at += 2;
-    for (int i = 0; i < lidars; ++i, at += 2) {
-      made.of_each.push_back(number_at<std::uint16_t>(data, at));
-    }
-  }
-  EXPECT_EQ(at, data.size());
-  return made;
 }
 
 /// The room of 5 m by 2.7 m, in its frame.
@@ -98,23 +64,6 @@ class Merged : public Server {
                                    "rear=-0.4,-0.2,-150"};
     words.insert(words.end(), more.begin(), more.end());
     begin(words, "front=sim:?world=" + path("front.txt") + front_more);
-  }
-  /// The next revolution that is as wanted; one without points if none came.
-  static revolution next_revolution(raw_client& client,
-                                    const std::function<bool(const revolution&)>& is_wanted) {
-    const auto end = std::chrono::steady_clock::now() + g4lidar::test::patience;
-    while (std::chrono::steady_clock::now() < end) {
-      const auto message = client.next_frame();
-      if (!message) break;
-      const auto got = revolution_of(*message);
-      if (got && is_wanted(*got)) return *got;
-    }
-    ADD_FAILURE() << "no such revolution";
-    return {};
-  }
-  static bool has_both(const revolution& got) {
-    return got.of_each.size() == 2 &&
-           std::ranges::all_of(got.of_each, [](std::size_t points) { return points > 800; });
   }
   /// The next status that is as wanted.
   static json next_status(raw_client& client, const std::function<bool(const json&)>& is_wanted) {

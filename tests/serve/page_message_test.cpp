@@ -43,6 +43,15 @@ TEST(PageScan, HasTheReturnsInTheRobotsFrame) {
   EXPECT_NEAR(number_at<float>(data, 28), 0.5F, 1e-5F);
 }
 
+TEST(PageScan, OfARevolutionThatIsNotWhole_IsMarked) {
+  const std::vector<g4lidar::point> points{{.angle_deg = 180.0F, .range_mm = 2000.0F}};
+  std::vector<std::uint8_t> data;
+  put_page_scan(
+      {.revolution = {.points = points, .flags = g4lidar::scan_flags::data_lost}, .stamp_s = 1.5},
+      data);
+  EXPECT_EQ(data.at(1), 0);
+}
+
 TEST(PageScan, HasThePlace_AfterTheReturns) {
   if constexpr (std::endian::native != std::endian::little) GTEST_SKIP();
   using g4lidar::point;

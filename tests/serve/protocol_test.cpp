@@ -192,6 +192,7 @@ TEST(PageTexts, SayWhatIsKnownAndNullElse) {
   status.stages.push_back({.stage = g4lidar::diagnostic_stage::loss});
   status.stages.back().find(g4lidar::diagnosis::bits_flipped);
   status.stages.back().add("lost_percent", 3.5);
+  status.stages.back().remark = "10 s were measured.";
   status.counts.stream.crc_mismatches = 7;
   const json text = json::parse(status_text(status));
   EXPECT_EQ(text["state"], "lost");
@@ -203,6 +204,8 @@ TEST(PageTexts, SayWhatIsKnownAndNullElse) {
   EXPECT_FALSE(text.contains("position_s"));
   const json& stage = text["stages"][0];
   EXPECT_EQ(stage["stage"], "loss");
+  EXPECT_EQ(stage["verdict"], "fail");
+  EXPECT_EQ(stage["remark"], "10 s were measured.");
   EXPECT_EQ(stage["diagnoses"][0]["name"], "bits_flipped");
   EXPECT_FALSE(stage["diagnoses"][0]["advice"].get<std::string>().empty());
   EXPECT_EQ(stage["evidence"][0]["value"], 3.5);

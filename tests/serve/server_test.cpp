@@ -3,13 +3,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <csignal>
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
-#include <memory>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <random>
 #include <string>
 #include <vector>
@@ -48,50 +46,9 @@ TEST_F(Server, PageAndStatus) {
   const std::string text = raw_client(port_).get("/status.json");
   const json status = json::parse(text.substr(text.find("\r\n\r\n") + 4));
   EXPECT_EQ(status["state"], "running");
+  EXPECT_TRUE(std::ranges::any_of(status["stages"],
+                                  [](const json& each) { return each["stage"] == "returns"; }));
   EXPECT_EQ(end(SIGINT).code, 130);
-}
-
-TEST_F(Server, StatusHasTheModelAndWhatContradicts) {
-  begin({}, "sim:?model=t-mini-plus&model_id=153");
-  ASSERT_TRUE(gets_scans(*open_page()));
-  json known;
-  ASSERT_TRUE(g4lidar::test::comes_true([&] {
-    const std::string text = raw_client(port_).get("/status.json");
-    known = json::parse(text.substr(text.find("\r\n\r\n") + 4))["recognition"];
-    return known["contradictions"].is_string();
-  }));
-  EXPECT_EQ(known["model"], "t-mini-plus");
-  EXPECT_EQ(known["number"], "153");
-  EXPECT_THAT(known["contradictions"].get<std::string>(), HasSubstr("153, which no known model"));
-}
-
-TEST_F(Server, StatusHasTheDirectionsWithoutAReturn) {
-  // No wall is near enough; or one alone, of 53 degrees, where the cable leaves the lidar.
-  for (const std::string wall : {"wall -900 900 900 900", "wall 2 -1 2 1"}) {
-    std::ofstream(path("world.txt")) << wall << "\nlidar 0 0 0\n";
-    begin({}, "sim:?world=" + path("world.txt"));
-    ASSERT_TRUE(gets_scans(*open_page()));
-    const bool is_blind = wall.starts_with("wall -900");
-    json found;
-    EXPECT_TRUE(g4lidar::test::comes_true([&] {
-      const std::string text = raw_client(port_).get("/status.json");
-      const json status = json::parse(text.substr(text.find("\r\n\r\n") + 4));
-      for (const json& each : status["stages"]) {
-        if (each["stage"] != "returns" || each["verdict"] == "skipped") continue;
-        if (is_blind ? each["verdict"] == "warn" : each["remark"].is_string()) found = each;
-      }
-      return !found.is_null();
-    })) << wall;
-    ASSERT_FALSE(found.is_null());
-    EXPECT_EQ(found["verdict"], is_blind ? "warn" : "ok") << found;
-    EXPECT_EQ(found["diagnoses"].size(), is_blind ? 1U : 0U) << found;
-    if (is_blind) {
-      EXPECT_EQ(found["diagnoses"][0]["name"], "no_returns");
-    } else {
-      EXPECT_THAT(found["remark"].get<std::string>(), HasSubstr("Nothing returned in"));
-    }
-    EXPECT_EQ(end().code, 128 + SIGTERM);
-  }
 }
 
 TEST_F(Server, PageProtocol_FromHelloToASetting) {
@@ -109,13 +66,6 @@ TEST_F(Server, PageProtocol_FromHelloToASetting) {
   EXPECT_TRUE(gets_scans(*client)) << "it goes on";
   EXPECT_EQ(next(*open_page(), "hello")["settings"]["frequency"], 10.0);
   EXPECT_EQ(end().code, 128 + SIGTERM);
-}
-
-TEST_F(Server, ReadOnly_UnlessAllowed) {
-  begin();
-  const auto client = open_page();
-  client->send_text(R"({"op":"set","name":"frequency","value":10})");
-  EXPECT_THAT(next(*client, "error")["message"].get<std::string>(), HasSubstr("--allow-set"));
 }
 
 TEST_F(Server, Recording_IsPausedAndSought) {
@@ -186,20 +136,11 @@ TEST_F(Server, UnknownSubprotocols_AreRefused) {
               HasSubstr("foxglove.sdk.v1\r\n"));
 }
 
-TEST_F(Server, HostileClients_HarmNobodyElse) {
+TEST_F(Server, HostileRequests_HarmNobodyElse) {
   begin();
   const auto good = open_page();
   const auto deaf = open_page();  // never reads
-  // All at once: the server waits a while for the answer to its close, and for the rest of a request.
-  std::vector<std::unique_ptr<raw_client>> broken;
-  for (const std::string& bytes :
-       {raw_client::frame(1, std::string(100'000, 'x'), std::uint64_t{1} << 62U),
-        raw_client::frame(1, std::string(20'000, ' ')), raw_client::frame(2, "binary"),
-        raw_client::frame(1, "no json"), raw_client::frame(9, std::string(200, 'p')),
-        raw_client::frame(3, "an opcode that is none"), raw_client::frame(1, "\xFF\xFF")}) {
-    broken.push_back(open_page());
-    broken.back()->send(bytes);
-  }
+  // All at once: the server waits a while for the rest of a request.
   std::vector<raw_client> all;
   for (const std::string& request :
        {std::string(100'000, 'A'), "GET / HTTP/1.1\r\nX: " + std::string(100'000, 'A'),
@@ -213,7 +154,6 @@ TEST_F(Server, HostileClients_HarmNobodyElse) {
     all.emplace_back(port_);
     all.back().send(request);
   }
-  for (const auto& bad : broken) EXPECT_TRUE(bad->read_to_end()) << "it is closed";
   EXPECT_TRUE(gets_scans(*good));
   for (raw_client& bad : all) {
     const auto answer = bad.read_to_end();
@@ -222,23 +162,6 @@ TEST_F(Server, HostileClients_HarmNobodyElse) {
   }
   EXPECT_TRUE(gets_scans(*good));
   EXPECT_EQ(end().code, 128 + SIGTERM);
-}
-
-TEST_F(Server, RandomBytes_EndOnlyTheirConnection) {
-  begin();
-  const auto good = open_page();
-  std::mt19937 random(7);
-  for (int i = 0; i < g4lidar::test::scaled(100); ++i) {
-    const bool is_socket = i % 2 == 0;
-    raw_client bad(port_);
-    if (is_socket) bad.upgrade(i % 4 == 0 ? page : "foxglove.sdk.v1");
-    std::string bytes(1 + random() % 300, '\0');
-    for (char& each : bytes) each = static_cast<char>(random());
-    if (!is_socket) bytes.insert(0, "GET / HTTP/1.1\r\n");
-    bad.send(bytes);
-  }
-  EXPECT_TRUE(gets_scans(*good));
-  EXPECT_TRUE(gets_scans(*open_page()));
 }
 
 TEST_F(Server, DamagedHandshakesAndFrames_EndOnlyTheirConnection) {
