@@ -19,7 +19,6 @@
 namespace ros2 {
 namespace {
 
-using ::testing::IsEmpty;
 using humble_message = rmw_dds_common_humble_msg_dds__ParticipantEntitiesInfo_;
 using iron_message = rmw_dds_common_msg_dds__ParticipantEntitiesInfo_;
 using keys = std::set<std::string>;
@@ -196,28 +195,6 @@ TEST_F(Announcement, IsMadeAgainInEachNewDomain) {
   const announced second = heard<iron_message>(type);
   EXPECT_NE(second.has.participant, first.has.participant);
   EXPECT_TRUE(comes_true([&] { return found() == second.has; }));
-}
-
-TEST_F(Announcement, IsNotMadeWhereNoRosIsInTheDomain) {
-  const served_lidar lidar;
-  subscriber<scan_message> scans(domain_, "/scan", dds::laser_scan);
-  cli::program tool({lidar.path()});
-  ASSERT_TRUE(comes_true([&] { return scans.take() > 0; }));
-  keys topics;
-  const dds::entity reader(dds_create_reader(domain_.participant(),
-                                             DDS_BUILTIN_TOPIC_DCPSPUBLICATION, nullptr, nullptr));
-  std::array<void*, 128> samples{};
-  std::array<dds_sample_info_t, 128> about{};
-  ASSERT_TRUE(comes_true([&] {
-    const dds_return_t count =
-        dds_take(reader.get(), samples.data(), about.data(), samples.size(), samples.size());
-    for (std::size_t i = 0; i < static_cast<std::size_t>(std::max(count, 0)); ++i) {
-      topics.insert(static_cast<const dds_builtintopic_endpoint_t*>(samples[i])->topic_name);
-    }
-    return topics.contains("rt/points") && topics.contains("rt/diagnostics");
-  }));
-  EXPECT_FALSE(topics.contains("ros_discovery_info"));
-  tool.send(SIGINT);
 }
 
 }  // namespace

@@ -4,19 +4,14 @@
 
 #include <gmock/gmock.h>
 
-#include <cmath>
 #include <cstdint>
-#include <fstream>
 #include <map>
 #include <set>
 #include <string>
-#include <string_view>
 
 #include "cli/program.hpp"
 #include "diagnosis.hpp"
-#include "g4lidar/sim/pty_port.hpp"
-#include "g4lidar/sim/setup.hpp"
-#include "g4lidar/sim/world.hpp"
+#include "lidar.hpp"
 #include "subscriber.hpp"
 
 namespace ros2 {
@@ -92,72 +87,12 @@ TEST(Diagnostics, NoTwoLidarsInADomainHaveAStatusOfTheSameName) {
 
 // An X2 and an X3 send the same bytes.
 TEST(Diagnostics, StateListsTheModelsThatTheBytesFit) {
-  g4lidar::sim::device_options options;
-  ASSERT_TRUE(g4lidar::sim::use_model(options, "x2"));
-  auto served = g4lidar::sim::background_pty::open(
-      g4lidar::sim::device(g4lidar::sim::built_in_world(), options));
-  ASSERT_TRUE(served);
-  const test_domain domain;
-  subscriber<diagnostic_message> diagnostics(domain, "/diagnostics", dds::diagnostic_array);
-  cli::program tool({served->path()});
-  std::string found;
-  EXPECT_TRUE(comes_true([&] {
-    diagnostics.take([&](const diagnostic_message& message) {
-      for (std::uint32_t i = 0; i < message.status._length; ++i) {
-        const auto& status = message.status._buffer[i];
-        for (std::uint32_t k = 0; k < status.values._length; ++k) {
-          const auto& pair = status.values._buffer[k];
-          if (std::string_view(pair.key) == "candidates") found = pair.value;
-        }
-      }
-    });
-    return !found.empty();
-  }));
-  EXPECT_THAT(found, ::testing::StartsWith("x2, x2l, x3"));
-  tool.send(SIGINT);
-}
-
-TEST(Diagnostics, StateIsAWarningWhereSomethingContradictsTheModel) {
+  const served_lidar lidar("x2");
   const test_domain domain;
   diagnosis values(domain);
-  cli::program tool({"sim:?model=t-mini-plus&model_id=153"});
-  EXPECT_TRUE(comes_true([&] { return !values["contradictions"].empty(); }));
-  EXPECT_THAT(values["contradictions"], HasSubstr("153, which no known model has"));
-  EXPECT_EQ(values["model"], "t-mini-plus");
-  EXPECT_EQ(values["number"], "153");
-  EXPECT_EQ(values["g4lidar: state level"], "1");
-  EXPECT_THAT(values["g4lidar: state warning"], HasSubstr("153, which no known model has"));
-  tool.send(SIGINT);
-}
-
-class DiagnosticsOfWorlds : public cli::scratch {};
-
-TEST_F(DiagnosticsOfWorlds, StageOfTheReturnsNamesTheDirectionsWithoutOne) {
-  const std::string world = path("world.txt");
-  std::ofstream(world) << "wall -900 900 900 900\nlidar 0 0 0\n";  // farther than any lidar sees
-  {
-    const test_domain domain;
-    diagnosis values(domain);
-    cli::program tool({"sim:?world=" + world});
-    EXPECT_TRUE(comes_true([&] { return values["diagnosis"] == "no_returns"; }));
-    EXPECT_EQ(values["g4lidar: returns level"], "1");
-    tool.send(SIGINT);
-  }
-  // 53 degrees of a wall, where the cable leaves the lidar: behind it.
-  std::ofstream(world) << "wall 2 -1 2 1\nlidar 0 0 0\n";
-  const test_domain domain;
-  diagnosis values(domain);
-  cli::program tool({"sim:?world=" + world});
-  const auto is_near = [&](const char* key, double wanted_deg) {
-    const std::string text = values[key];
-    return !text.empty() && std::abs(std::remainder(std::stod(text) - wanted_deg, 360.0)) < 4.0;
-  };
-  // After a few turns.
-  EXPECT_TRUE(comes_true([&] {
-    return is_near("nothing_from_deg", -153.4) && is_near("nothing_to_deg", 153.4);
-  })) << values["nothing_from_deg"]
-      << " to " << values["nothing_to_deg"];
-  EXPECT_EQ(values["g4lidar: returns level"], "0");
+  cli::program tool({lidar.path()});
+  EXPECT_TRUE(comes_true([&] { return !values["candidates"].empty(); }));
+  EXPECT_THAT(values["candidates"], ::testing::StartsWith("x2, x2l, x3"));
   tool.send(SIGINT);
 }
 

@@ -5,7 +5,6 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <cstring>
 #include <numbers>
 #include <span>
 #include <string>
@@ -21,7 +20,6 @@ namespace ros2 {
 namespace {
 
 using ::testing::ElementsAre;
-using ::testing::FloatEq;
 using ::testing::Pointwise;
 
 class Publish : public cli::scratch {
@@ -80,45 +78,6 @@ TEST_F(Publish, TheLongestRangeIsTheLimitOfTheOption_AndTheOrderOfTimeIsExplaine
   const cli::outcome end = tool.wait();
   EXPECT_EQ(end.code, 130);
   EXPECT_NE(end.err.find("--order time is not for slam_toolbox"), std::string::npos) << end.err;
-}
-
-TEST_F(Publish, PointsWithTheirTimes) {
-  const std::string file = path("walk.mcap");
-  make_recording(file, 3);
-  const std::vector<g4lidar::owned_scan> wanted = scans_of(file);
-  subscriber<cloud_message> clouds(domain_, "/robot1/cloud", dds::point_cloud2, {.depth = 100});
-  cli::program tool({file, "--standby", "--namespace", "robot1", "--points-topic", "cloud",
-                     "--scan-topic", "off"});
-  std::size_t compared = 0;
-  std::size_t next = 0;
-  EXPECT_TRUE(comes_true([&] {
-    clouds.take([&](const cloud_message& message) {
-      while (next < wanted.size() && wanted[next].view().is_piece()) ++next;
-      ASSERT_LT(next, wanted.size());
-      const g4lidar::scan scan = wanted[next++].view();
-      std::size_t at = 0;
-      for (const g4lidar::point& p : scan) {
-        if (p.is_no_return()) continue;
-        ASSERT_LE(at + message.point_step, message.data._length);
-        std::array<float, 2> xy{};
-        std::uint32_t t_ns = 0;
-        std::memcpy(xy.data(), message.data._buffer + at, sizeof xy);
-        std::memcpy(&t_ns, message.data._buffer + at + 12, sizeof t_ns);
-        const double bearing = (180.0 - static_cast<double>(p.angle_deg)) * std::numbers::pi / 180;
-        const double range_m = static_cast<double>(p.range_mm) * 1e-3;
-        EXPECT_NEAR(static_cast<double>(xy[0]), range_m * std::cos(bearing), 1e-4);
-        EXPECT_NEAR(static_cast<double>(xy[1]), range_m * std::sin(bearing), 1e-4);
-        EXPECT_EQ(t_ns, p.time_ns - scan.time_ns());
-        at += message.point_step;
-      }
-      EXPECT_EQ(at, message.data._length);
-      EXPECT_EQ(message.width * message.point_step, message.row_step);
-      ++compared;
-    });
-    return compared > 12;
-  }));
-  EXPECT_GT(compared, 12U);
-  tool.send(SIGINT);
 }
 
 /// What subscriber and publisher want.

@@ -62,42 +62,18 @@ double seconds_of(const builtin_interfaces_msg_dds__Time_& stamp) {
   return stamp.sec + stamp.nanosec * 1e-9;
 }
 
-TEST_F(Robot, TwoLidarsInNamespacesOrAsOneScan) {
+TEST_F(Robot, TwoLidarsAreInNamespaces) {
   const served_lidar front;
   const served_lidar rear;
-  const std::vector<std::string> sources{"front=" + front.path(), "rear=" + rear.path()};
-  {
-    subscriber<scan_message> front_scans(domain_, "/front/scan", dds::laser_scan);
-    subscriber<scan_message> rear_scans(domain_, "/rear/scan", dds::laser_scan);
-    cli::program tool(sources);
-    std::string frame_id;
-    EXPECT_TRUE(comes_true([&] {
-      return front_scans.take([&](const scan_message& scan) { frame_id = scan.header.frame_id; }) >
-             0;
-    }));
-    EXPECT_EQ(frame_id, "front_laser");
-    EXPECT_TRUE(comes_true([&] { return rear_scans.take() > 0; }));
-    tool.send(SIGINT);
-    tool.wait();
-  }
-  // Both are at the same place of the same room: turned by half a turn, the second one sees what is behind the
-  // robot where the first one sees what is ahead.
-  std::vector<std::string> words = sources;
-  words.insert(words.end(), {"--merge", "--mount", "front=0,0,0", "--mount", "rear=0,0,180"});
-  subscriber<scan_message> scans(domain_, "/scan", dds::laser_scan);
-  subscriber<cloud_message> clouds(domain_, "/points", dds::point_cloud2);
-  cli::program tool(words);
-  std::size_t most = 0;
+  subscriber<scan_message> front_scans(domain_, "/front/scan", dds::laser_scan);
+  subscriber<scan_message> rear_scans(domain_, "/rear/scan", dds::laser_scan);
+  cli::program tool({"front=" + front.path(), "rear=" + rear.path()});
   std::string frame_id;
   EXPECT_TRUE(comes_true([&] {
-    clouds.take([&](const cloud_message& cloud) {
-      most = std::max<std::size_t>(most, cloud.width);
-      frame_id = cloud.header.frame_id;
-    });
-    return most > 1700;  // of two times 1286 samples
-  })) << most;
-  EXPECT_EQ(frame_id, "base_link");
-  EXPECT_TRUE(comes_true([&] { return scans.take() > 0; }));
+    return front_scans.take([&](const scan_message& scan) { frame_id = scan.header.frame_id; }) > 0;
+  }));
+  EXPECT_EQ(frame_id, "front_laser");
+  EXPECT_TRUE(comes_true([&] { return rear_scans.take() > 0; }));
   tool.send(SIGINT);
 }
 
@@ -133,57 +109,44 @@ TEST_F(Robot, ItsWayInARecordingWithTheTime) {
   tool.send(SIGINT);
 }
 
-TEST_F(Robot, ItsOdometryGoesOnWhereTheRecordingBeginsAgain) {
+TEST_F(Robot, ItsTimesGoOnWhereTheRecordingBeginsAgain) {
   const std::string file = path("way.mcap");
   cli::write_file(path("way.txt"), "drive forward 0.5 0.5\n");
   make_recording(file, 3, "--path " + path("way.txt") + " --odometry " + path("way.odo"),
                  "--odometry " + path("way.odo"));
   subscriber<odometry_message> odometry(domain_, "/odom", dds::odometry, {.depth = 5000});
-  subscriber<scan_message> scans(domain_, "/scan", dds::laser_scan, {.depth = 100});
+  subscriber<scan_message> scans(domain_, "/scan", dds::laser_scan, {.depth = 1000});
+  subscriber<clock_message> clock(domain_, "/clock", dds::clock_message, {.depth = 1000});
+  subscriber<diagnostic_message> diagnostics(domain_, "/diagnostics", dds::diagnostic_array);
   cli::program tool({file, "--standby", "--loop", "--playback-speed", "10"});
   std::vector<double> times;
   std::vector<double> ways;
-  double scan_s = 0;
-  EXPECT_TRUE(comes_true([&] {
-    odometry.take([&](const odometry_message& at) {
-      times.push_back(seconds_of(at.header.stamp));
-      ways.push_back(at.pose.pose.position.x);
-    });
-    scans.take([&](const scan_message& at) { scan_s = seconds_of(at.header.stamp); });
-    return !times.empty() && times.back() - times.front() > 10;
-  }));
-  EXPECT_TRUE(std::ranges::is_sorted(times));
-  EXPECT_NEAR(times.back(), scan_s, 3.0);
-  // In each round it begins where it began.
-  int beginnings = 0;
-  for (std::size_t i = 1; i < ways.size(); ++i) beginnings += ways[i] < ways[i - 1] - 0.4 ? 1 : 0;
-  EXPECT_GE(beginnings, 2);
-  tool.send(SIGINT);
-}
-
-TEST_F(Robot, TheTimeOfARecordingGoesOnWhereItBeginsAgain) {
-  const std::string file = path("stand.mcap");
-  make_recording(file, 3);
-  subscriber<clock_message> clock(domain_, "/clock", dds::clock_message, {.depth = 1000});
-  subscriber<scan_message> scans(domain_, "/scan", dds::laser_scan, {.depth = 100});
-  subscriber<diagnostic_message> diagnostics(domain_, "/diagnostics", dds::diagnostic_array);
-  cli::program tool({file, "--standby", "--loop", "--playback-speed", "20"});
-  std::vector<double> times;
+  std::vector<double> clocks;
   std::vector<double> stamps;
   std::vector<double> reports;
   EXPECT_TRUE(comes_true(
       [&] {
-        clock.take([&](const clock_message& now) { times.push_back(seconds_of(now.clock)); });
+        odometry.take([&](const odometry_message& at) {
+          times.push_back(seconds_of(at.header.stamp));
+          ways.push_back(at.pose.pose.position.x);
+        });
+        clock.take([&](const clock_message& now) { clocks.push_back(seconds_of(now.clock)); });
         scans.take([&](const scan_message& at) { stamps.push_back(seconds_of(at.header.stamp)); });
         diagnostics.take(
             [&](const diagnostic_message& at) { reports.push_back(seconds_of(at.header.stamp)); });
         return !times.empty() && times.back() - times.front() > 40 && !stamps.empty() &&
-               !reports.empty() && reports.back() - times.front() > 30;
+               !clocks.empty() && !reports.empty() && reports.back() - clocks.front() > 30;
       },
       std::chrono::seconds(60)));
-  EXPECT_TRUE(std::ranges::is_sorted(times, std::less_equal()));
+  EXPECT_TRUE(std::ranges::is_sorted(times));
+  EXPECT_TRUE(std::ranges::is_sorted(clocks, std::less_equal()));
   EXPECT_TRUE(std::ranges::is_sorted(stamps, std::less_equal()));
   EXPECT_TRUE(std::ranges::is_sorted(reports));
+  EXPECT_NEAR(times.back(), stamps.back(), 3.0);
+  // In each round it begins where it began.
+  int beginnings = 0;
+  for (std::size_t i = 1; i < ways.size(); ++i) beginnings += ways[i] < ways[i - 1] - 0.4 ? 1 : 0;
+  EXPECT_GE(beginnings, 2);
   tool.send(SIGINT);
 }
 
@@ -198,7 +161,10 @@ TEST_F(Robot, MergedLidarsSeeTheWallsWhereTheyAre) {
                      "--merge", "--mount", "front=0.3,0.1,20", "--mount", "rear=-0.4,-0.2,-150"});
   std::vector<place> points;
   EXPECT_TRUE(comes_true([&] {
-    clouds.take([&](const cloud_message& cloud) { points = places_of(cloud); });
+    clouds.take([&](const cloud_message& cloud) {
+      points = places_of(cloud);
+      EXPECT_STREQ(cloud.header.frame_id, "base_link");
+    });
     return points.size() > 2000;
   })) << points.size();
   std::map<int, int> walls;
@@ -295,50 +261,6 @@ TEST_F(Robot, MergedLidars_HaveTheIntensitiesOfThoseThatMeasureThem) {
   })) << bright
       << " and " << dark;
   EXPECT_EQ(range_max, 16.0F) << "of the G4";
-  tool.send(SIGINT);
-}
-
-TEST_F(Robot, MergedLidarsFollowTheSimulatedRobot) {
-  cli::write_file(path("turn.txt"),
-                  std::string(small_room) + "lidar 0 0 0\nmount 0,0,0\ndrive turn 3600 60\n");
-  subscriber<cloud_message> clouds(domain_, "/points", dds::point_cloud2);
-  subscriber<odometry_message> odometry(domain_, "/odom", dds::odometry, {.depth = 1000});
-  diagnosis diagnostics(domain_);
-  cli::program tool({"front=sim:?world=" + path("turn.txt"), "--merge", "--mount", "front=0,0,0",
-                     "--deskew", "odometry"});
-  std::map<double, double> yaws;
-  double stamp_s = 0;
-  std::vector<place> points;
-  int scans = 0;
-  EXPECT_TRUE(comes_true([&] {
-    odometry.take([&](const odometry_message& at) {
-      const auto& turn = at.pose.pose.orientation;
-      yaws[seconds_of(at.header.stamp)] = 2 * std::atan2(turn.z, turn.w);
-    });
-    // Each time one that is followed by odometry.
-    if (scans > 5 && !points.empty()) return !yaws.empty() && yaws.rbegin()->first > stamp_s;
-    clouds.take([&](const cloud_message& cloud) {
-      ++scans;
-      points = places_of(cloud);
-      stamp_s = seconds_of(cloud.header.stamp);
-    });
-    return false;
-  }));
-  const auto after = yaws.lower_bound(stamp_s);
-  ASSERT_TRUE(after != yaws.end() && after != yaws.begin());
-  const auto before = std::prev(after);
-  ASSERT_LT(after->first - before->first, 0.1);
-  const double part = (stamp_s - before->first) / (after->first - before->first);
-  const double yaw =
-      before->second + part * std::remainder(after->second - before->second, 2 * std::numbers::pi);
-  std::size_t good = 0;
-  for (const place& at : points) {
-    const place turned{at.x * std::cos(yaw) - at.y * std::sin(yaw),
-                       at.x * std::sin(yaw) + at.y * std::cos(yaw)};
-    good += nearest_wall(turned).second < 0.06 ? 1U : 0U;
-  }
-  EXPECT_GT(good, points.size() * 95 / 100) << points.size();
-  EXPECT_TRUE(comes_true([&] { return diagnostics["g4lidar: deskewing level"] == "0"; }));
   tool.send(SIGINT);
 }
 

@@ -169,19 +169,6 @@ TEST_F(Subscribers, OneThatStandsStillHoldsUpNobody) {
   EXPECT_EQ(tool.wait().code, 130);
 }
 
-TEST_F(Subscribers, FindTheirTopicsAgainAfterAnUnplug) {
-  const served_lidar lidar;
-  subscriber<scan_message> scans(domain_, "/scan", dds::laser_scan);
-  cli::program tool({lidar.path()});
-  ASSERT_TRUE(comes_true([&] { return scans.take() > 0; }));
-  lidar.unplug(true);
-  std::this_thread::sleep_for(500ms);
-  static_cast<void>(scans.take());
-  lidar.unplug(false);
-  EXPECT_TRUE(comes_true([&] { return scans.take() > 0; }));
-  tool.send(SIGINT);
-}
-
 /// The typehash of each topic that is published, by its name in DDS.
 std::map<std::string, std::string> hashes_in(const test_domain& domain) {
   std::map<std::string, std::string> found;
