@@ -269,6 +269,8 @@ TEST(CLidar, FailsWithGoneAfterClose) {
   g4lidar_release(closed);
   EXPECT_FALSE(g4lidar_is_scanning(closed));
   EXPECT_EQ(g4lidar_descriptor(closed), -1);
+  EXPECT_EQ(g4lidar_deadline_ns(closed), INT64_MAX);
+  EXPECT_EQ(g4lidar_poll_timeout_ms(closed), -1);
   EXPECT_EQ(g4lidar_get_identity(closed)->model, 5);
   EXPECT_GT(g4lidar_get_counts(closed)->bytes, 0U);
   EXPECT_NE(g4lidar_name(closed), nullptr);

@@ -124,16 +124,6 @@ TEST(CLoop, AWakeEndsTheWaitForAScan) {
   EXPECT_EQ(loop(it, 300, 3, why), 3);
 }
 
-TEST(CLoop, AClosedLidarHasNoDeadline) {
-  const simulator device = simulate();
-  const lidar it = start_on(device);
-  EXPECT_EQ(g4lidar_descriptor(it.get()), -1);  // virtual time
-  EXPECT_NE(g4lidar_deadline_ns(it.get()), never);
-  ASSERT_EQ(g4lidar_close(it.get(), nullptr), G4LIDAR_OK);
-  EXPECT_EQ(g4lidar_deadline_ns(it.get()), never);
-  EXPECT_EQ(g4lidar_poll_timeout_ms(it.get()), -1);
-}
-
 TEST(CLoop, ProcessingCountsTheScansThatNobodyTakes) {
   const simulator device = simulate("sim:?seed=5");
   const lidar it = start_on(device);

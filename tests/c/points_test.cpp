@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 // Coordinates, grids and twists in C.
-#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -29,6 +28,14 @@ TEST(CPoints, ToCoordinates) {
   ASSERT_EQ(g4lidar_to_polar(points.data(), 3, G4LIDAR_ROBOT, 180, polar.data()), G4LIDAR_OK);
   EXPECT_NEAR(polar[0].bearing_rad, std::numbers::pi_v<float> / 2.0F, 1e-6F);
   EXPECT_NEAR(polar[0].range_m, 2.0F, 1e-6F);
+  ASSERT_EQ(g4lidar_to_xy(points.data(), 3, G4LIDAR_ROBOT, 0, xy.data()), G4LIDAR_OK);
+  EXPECT_NEAR(xy[1].x_m, -1.0F, 1e-6F) << "a model that is not turned looks at its 0 degrees";
+  EXPECT_NEAR(xy[0].y_m, -2.0F, 1e-6F);
+  ASSERT_EQ(g4lidar_to_polar(points.data(), 3, G4LIDAR_ROBOT, 0, polar.data()), G4LIDAR_OK);
+  EXPECT_NEAR(polar[0].bearing_rad, -std::numbers::pi_v<float> / 2.0F, 1e-6F);
+  EXPECT_EQ(g4lidar_to_polar(points.data(), 3, G4LIDAR_ROBOT, 90, polar.data()),
+            G4LIDAR_BAD_ARGUMENT);
+  EXPECT_EQ(g4lidar_to_xy(points.data(), 3, G4LIDAR_ROBOT, 90, xy.data()), G4LIDAR_BAD_ARGUMENT);
   EXPECT_EQ(g4lidar_to_xy(points.data(), 3, 2, 180, xy.data()), G4LIDAR_BAD_ARGUMENT);
   EXPECT_EQ(g4lidar_to_xy(nullptr, 0, G4LIDAR_ROBOT, 180, nullptr), G4LIDAR_OK);
 }
@@ -57,6 +64,9 @@ TEST(CPoints, FillAGrid) {
   options.pick = 7;
   EXPECT_EQ(g4lidar_fill_grid(points.data(), 4, &options, ranges.data(), 4), G4LIDAR_BAD_ARGUMENT);
   EXPECT_EQ(g4lidar_fill_grid(points.data(), 4, nullptr, ranges.data(), 0), G4LIDAR_BAD_ARGUMENT);
+  options.pick = G4LIDAR_MINIMUM;
+  options.turn_deg = 90;
+  EXPECT_EQ(g4lidar_fill_grid(points.data(), 4, &options, ranges.data(), 4), G4LIDAR_BAD_ARGUMENT);
 }
 
 TEST(CPoints, NoReturnAndTooNear_AreWhatTheOptionsSet) {
@@ -80,47 +90,14 @@ TEST(CPoints, NoReturnAndTooNear_AreWhatTheOptionsSet) {
   ASSERT_EQ(fill(), G4LIDAR_OK);
   EXPECT_EQ(ranges[1], -infinity);
   EXPECT_EQ(ranges[2], 16.0F);
+  options.longest_range_mm = 65535.0F;
+  ASSERT_EQ(fill(), G4LIDAR_OK);
+  EXPECT_EQ(ranges[2], 65.535F);
   options.no_return = G4LIDAR_NO_RETURN_AS_NAN;
   ASSERT_EQ(fill(), G4LIDAR_OK);
   EXPECT_TRUE(std::isnan(ranges[2]));
   options.no_return = 3;
   EXPECT_EQ(fill(), G4LIDAR_BAD_ARGUMENT);
-}
-
-constexpr std::int64_t second = 1'000'000'000;
-
-// A model that is not turned looks at its 0 degrees, and its 270 degrees are to the left.
-TEST(CTurn, PointsAreTurnedByTheArgument) {
-  const std::array<g4lidar_point, 2> points{at(0.0F, 3000.0F, second), at(270.0F, 500.0F, second)};
-  std::array<g4lidar_xy, 2> xy{};
-  std::array<g4lidar_polar, 2> polar{};
-  ASSERT_EQ(g4lidar_to_xy(points.data(), 2, G4LIDAR_ROBOT, 0, xy.data()), G4LIDAR_OK);
-  EXPECT_NEAR(xy[0].x_m, 3.0F, 1e-5F);
-  EXPECT_NEAR(xy[1].y_m, 0.5F, 1e-5F);
-  ASSERT_EQ(g4lidar_to_polar(points.data(), 2, G4LIDAR_ROBOT, 0, polar.data()), G4LIDAR_OK);
-  EXPECT_NEAR(polar[1].bearing_rad, std::numbers::pi / 2, 1e-5);
-  EXPECT_EQ(g4lidar_to_xy(points.data(), 2, G4LIDAR_ROBOT, 90, xy.data()), G4LIDAR_BAD_ARGUMENT);
-  EXPECT_EQ(g4lidar_to_polar(points.data(), 2, G4LIDAR_ROBOT, 90, polar.data()),
-            G4LIDAR_BAD_ARGUMENT);
-
-  g4lidar_grid_options options;
-  g4lidar_grid_options_init(&options, sizeof options);
-  EXPECT_EQ(options.turn_deg, 180U);
-  EXPECT_EQ(options.longest_range_mm, 16000.0F);
-  std::array<float, 4> ranges{};
-  ASSERT_EQ(g4lidar_fill_grid(points.data(), 2, &options, ranges.data(), 4), G4LIDAR_OK);
-  EXPECT_FLOAT_EQ(ranges[0], 3.0F) << "behind";
-  options.turn_deg = 0;
-  ASSERT_EQ(g4lidar_fill_grid(points.data(), 2, &options, ranges.data(), 4), G4LIDAR_OK);
-  EXPECT_FLOAT_EQ(ranges[2], 3.0F) << "ahead";
-  EXPECT_FLOAT_EQ(ranges[3], 0.5F) << "to the left";
-  options.no_return = G4LIDAR_NO_RETURN_AS_MAX;
-  options.longest_range_mm = 65535.0F;
-  const g4lidar_point none = at(0.0F, 0.0F, second);
-  ASSERT_EQ(g4lidar_fill_grid(&none, 1, &options, ranges.data(), 1), G4LIDAR_OK);
-  EXPECT_EQ(ranges[0], 65.535F);
-  options.turn_deg = 90;
-  EXPECT_EQ(g4lidar_fill_grid(points.data(), 2, &options, ranges.data(), 4), G4LIDAR_BAD_ARGUMENT);
 }
 
 }  // namespace

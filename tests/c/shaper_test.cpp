@@ -110,29 +110,6 @@ TEST_F(CFilter, RefusesImpossibleOptions) {
   EXPECT_EQ(shape(), G4LIDAR_BAD_ARGUMENT);
 }
 
-TEST(CShaper, FlagsWhatMayBeTooNear) {
-  // A return at 0.4 m; the same beam without return, whose direction is 3.1 degrees less; another one.
-  std::vector<g4lidar_point> points{at(90.0F, 400.0F), at(86.9F, 0.0F), at(180.0F, 0.0F)};
-  points[1].revolution = points[2].revolution = 1;
-  g4lidar_near_options limits;
-  g4lidar_near_options_init(&limits, sizeof limits);
-  g4lidar_shaper_options options = shaper_defaults();
-  options.near_options = &limits;
-  const auto flags = [&] {
-    const shaper made = make(options);
-    EXPECT_EQ(g4lidar_shaper_shape(made.get(), points.data(), 3, false, nullptr, 0), G4LIDAR_OK);
-    return std::vector<int>{kept_by(made)[1].flags, kept_by(made)[2].flags};
-  };
-  EXPECT_EQ(flags(),
-            (std::vector<int>{G4LIDAR_NO_RETURN | G4LIDAR_MAY_BE_TOO_NEAR, G4LIDAR_NO_RETURN}));
-  limits.shortest_mm = 100.0F;
-  EXPECT_EQ(flags(), (std::vector<int>{G4LIDAR_NO_RETURN, G4LIDAR_NO_RETURN}))
-      << "400 mm is not near";
-  limits.shortest_mm = -1.0F;
-  g4lidar_shaper* made = nullptr;
-  EXPECT_EQ(g4lidar_shaper_create(&options, &made, nullptr), G4LIDAR_BAD_ARGUMENT);
-}
-
 TEST(CShaper, ShapesTheScansOfItsModel) {
   // A T-mini looks at its 0 degrees, and does not correct angles: 90 degrees without return are the beam of before.
   std::vector<g4lidar_point> points{at(90.0F, 400.0F), at(90.0F, 0.0F), at(0.0F, 1000.0F)};
@@ -164,6 +141,10 @@ TEST(CShaper, ShapesTheScansOfItsModel) {
   EXPECT_EQ(flags(nullptr), flags("g4"));
   options.model = "g44";
   g4lidar_shaper* none = nullptr;
+  EXPECT_EQ(g4lidar_shaper_create(&options, &none, nullptr), G4LIDAR_BAD_ARGUMENT);
+  limits.shortest_mm = 100.0F;
+  EXPECT_EQ(flags("t-mini-pro"), (std::vector<int>{0, G4LIDAR_NO_RETURN})) << "400 mm is not near";
+  limits.shortest_mm = -1.0F;
   EXPECT_EQ(g4lidar_shaper_create(&options, &none, nullptr), G4LIDAR_BAD_ARGUMENT);
 }
 
@@ -227,6 +208,9 @@ TEST(CShaper, DeskewsByThePath_AndFlagsAndCountsTheRest) {
   path[0].time_ns = 5 * second_ns;
   EXPECT_EQ(g4lidar_shaper_shape(made.get(), points.data(), 3, false, path.data(), 2),
             G4LIDAR_BAD_ARGUMENT);
+  path[0] = {second_ns, {std::nan(""), 0.0, 0.0}};
+  EXPECT_EQ(g4lidar_shaper_shape(made.get(), points.data(), 3, false, path.data(), 1),
+            G4LIDAR_BAD_ARGUMENT);
   options.deskew = 3;
   g4lidar_shaper* none = nullptr;
   EXPECT_EQ(g4lidar_shaper_create(&options, &none, nullptr), G4LIDAR_BAD_ARGUMENT);
@@ -255,21 +239,6 @@ TEST(CShaper, DeskewsForItsMountingAndItsModel) {
   back.pose.yaw_rad = std::numbers::pi;
   options.mount = &back;
   EXPECT_NEAR(range_mm(180.0F), 3000.0F, 0.02F);
-}
-
-TEST(CShaper, LeavesPointsWithoutTimeWhereTheyAre_AndRefusesImpossiblePoses) {
-  g4lidar_shaper_options options = shaper_defaults();
-  options.deskew = G4LIDAR_DESKEW_BY_PATH;
-  const shaper made = make(options);
-  const std::vector<g4lidar_point> points{at(180.0F, 3000.0F, second), at(180.0F, 3000.0F, 0),
-                                          at(180.0F, 3000.0F, 9 * second)};
-  ASSERT_EQ(g4lidar_shaper_shape(made.get(), points.data(), 3, false, ahead, 2), G4LIDAR_OK);
-  EXPECT_EQ(g4lidar_shaper_outside(made.get()), 2U);
-  EXPECT_EQ(kept_by(made)[1].flags, G4LIDAR_NOT_DESKEWED);
-  EXPECT_EQ(kept_by(made)[2].range_mm, 3000.0F);
-  const g4lidar_stamped_pose impossible{second, {std::nan(""), 0.0, 0.0}};
-  EXPECT_EQ(g4lidar_shaper_shape(made.get(), points.data(), 3, false, &impossible, 1),
-            G4LIDAR_BAD_ARGUMENT);
 }
 
 }  // namespace

@@ -7,7 +7,6 @@
 #include <cstdlib>
 #include <cstring>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "c_handles.hpp"
@@ -172,21 +171,6 @@ TEST(CDiscovery, RealTimeLidarIsListedFoundSelectedAndWoken) {
   while (code == G4LIDAR_OK) code = g4lidar_try_scan(it.get(), patience_ms, &scan, &why);
   EXPECT_EQ(code, G4LIDAR_GONE);
   EXPECT_EQ(why.is_fatal, 1);
-}
-
-TEST(CRealTime, AnotherThreadWakesAWaitingCall) {
-  g4lidar_lidar* opened = nullptr;
-  g4lidar_error why;
-  ASSERT_EQ(g4lidar_open("sim:?silence_ns=60s", &opened, &why), G4LIDAR_OK) << why.message;
-  const lidar it(opened);
-  ASSERT_EQ(g4lidar_start(it.get(), &why), G4LIDAR_OK) << why.message;
-  std::thread other([&] {
-    std::this_thread::sleep_for(std::chrono::milliseconds(50));
-    g4lidar_wake(it.get());
-  });
-  const g4lidar_scan* scan = nullptr;
-  EXPECT_EQ(g4lidar_try_scan(it.get(), patience_ms, &scan, &why), G4LIDAR_CANCELLED);
-  other.join();
 }
 
 TEST(CRealTime, MonitorHasADescriptor) {
