@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """scans_async() does what scans() does: ends, timeouts, reconnects, the newest scan."""
 import asyncio
+import threading
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -207,9 +208,11 @@ def test_a_recording_ends_and_leaves_the_loop_free(g4_simulator: Make, tmp_path:
                     ticks += 1
 
             other = asyncio.create_task(tick())
+            before = threading.active_count()
             with g4lidar.open(path, speed=speed) as lidar:
                 lidar.start()
                 assert await count_scans(lidar) >= len(recorded)
+                assert threading.active_count() == before
             other.cancel()
             assert ticks >= len(recorded)
 

@@ -206,54 +206,6 @@ def test_merge() -> None:
     assert np.abs(np.hypot(x - middle, y) - 2.0).max() < 1e-3
 
 
-def test_a_lidar_that_is_not_turned() -> None:
-    points = ring(2000, 360)
-    points["range_mm"][0] = 1000  # ahead
-    points["range_mm"][270] = 500  # to the left
-    x, y = g4lidar.to_xy(points, turn_deg=0).T
-    assert x[0] == pytest.approx(1.0) and y[270] == pytest.approx(0.5)
-    assert g4lidar.to_xy(points)[0][0] == pytest.approx(-1.0)
-    grid = g4lidar.fill_grid(points, 360, turn_deg=0)
-    assert grid[180] == pytest.approx(1.0) and grid[270] == pytest.approx(0.5)
-    points["range_mm"][90] = 0
-    points["flags"][90] = PointFlag.NO_RETURN
-    assert g4lidar.fill_grid(points, 360, turn_deg=0, no_return="max", longest_mm=65535)[90] == pytest.approx(65.535)
-    points = ring(2000, 360)
-    reference = int(points["time_ns"][0])
-    seconds = (points["time_ns"] - reference) * 1e-9
-    straight, _ = g4lidar.deskew(points, g4lidar.Twist(x_m_per_s=1.0), reference, turn_deg=0)
-    x, y = g4lidar.to_xy(points, turn_deg=0).T
-    moved_x, moved_y = g4lidar.to_xy(straight, turn_deg=0).T
-    assert np.abs(moved_x - (x + seconds)).max() < 1e-4 and np.abs(moved_y - y).max() < 1e-4
-    # Merged points are those of a G4.
-    place = g4lidar.Mounting(x_m=0.5)
-    points["range_mm"][0] = 1000
-    merged, _, _ = g4lidar.merge_scans([(points, place, 0), (points, place)], g4lidar.Twist(), reference)
-    x, y = g4lidar.to_xy(merged).T
-    assert x[0] == pytest.approx(1.5) and x[360] == pytest.approx(-0.5)
-    for wrong in (90, 360):
-        with pytest.raises(ValueError, match="turn_deg"):
-            g4lidar.to_xy(points, turn_deg=wrong)
-
-
-def test_twist_from_scans(g4_simulator: Make, tmp_path: Path) -> None:
-    way = tmp_path / "way.txt"
-    way.write_text("drive wait 2\ndrive forward 2 0.5\n")
-    estimator = g4lidar.TwistEstimator()
-    known = []
-    with g4lidar.open(g4_simulator(path=str(way))) as lidar:
-        lidar.start(frequency_hz=10)
-        for scan in lidar.scans():
-            assert (scan.model, scan.turn_deg, len(scan.ranges())) == ("g4", 180, 720)
-            estimate = estimator.add(scan.points, scan.turn_deg)
-            if estimate.is_known and 3_200_000_000 < scan.time_ns < 5_000_000_000:
-                known.append(math.hypot(estimate.twist.x_m_per_s, estimate.twist.y_m_per_s))
-            if scan.time_ns > 5_500_000_000:
-                break
-    assert len(known) > 5
-    assert abs(float(np.median(known)) - 0.5) < 0.1
-
-
 def test_doctor_takes_the_file_that_open_takes(g4_simulator: Make, tmp_path: Path) -> None:
     path = tmp_path / "walk.mcap"
     with g4lidar.open(g4_simulator(), record=path) as lidar:

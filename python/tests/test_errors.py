@@ -91,25 +91,6 @@ def test_setting_during_a_scan(g4_lidar: g4lidar.Lidar) -> None:
     assert g4_lidar.is_scanning
 
 
-def test_no_scan_was_started(g4_lidar: g4lidar.Lidar) -> None:
-    with pytest.raises(errors.NotScanning):
-        g4_lidar.try_scan()
-
-
-@pytest.mark.g4(faults=["unplug@3s"])
-def test_unplug(g4_lidar: g4lidar.Lidar) -> None:
-    g4_lidar.start()
-    with pytest.raises(errors.Gone):
-        for _ in g4_lidar.scans():
-            pass
-
-
-@pytest.mark.g4(faults=["health=2"])
-def test_defect(g4_lidar: g4lidar.Lidar) -> None:
-    with pytest.raises(errors.Unhealthy):
-        g4_lidar.start()
-
-
 def test_wrong_arrays_are_refused() -> None:
     import numpy as np
 

@@ -233,51 +233,15 @@ def test_a_subinterpreter_is_refused() -> None:
     assert out == "refused\n", err
 
 
-def test_async_scans_leave_the_loop_free(g4_simulator: Make) -> None:
-    async def read() -> tuple[int, int]:
-        ticks = 0
-
-        async def tick() -> None:
-            nonlocal ticks
-            while True:
-                await asyncio.sleep(0.01)
-                ticks += 1
-
-        other = asyncio.create_task(tick())
-        before = threading.active_count()
-        count = 0
-        with g4lidar.open(g4_simulator(virtual_time=False)) as lidar:
-            lidar.start(frequency_hz=12)
-            async for scan in lidar.scans_async(timeout=5):
-                assert len(scan) > 100
-                count += 1
-                if count == 5:
-                    break
-            assert threading.active_count() == before
-        other.cancel()
-        return count, ticks
-
-    count, ticks = asyncio.run(read())
-    assert count == 5
-    assert ticks > 10
-
-
-def test_async_timeout_and_virtual_time(g4_simulator: Make) -> None:
-    async def read() -> int:
-        with g4lidar.open(g4_simulator(faults=["stall@3s"]), stall_time=60) as lidar:
-            lidar.start()
-            count = 0
-            with pytest.raises(errors.Timeout):
-                async for _ in lidar.scans_async(timeout=1):
-                    count += 1
+def test_async_timeout(g4_simulator: Make) -> None:
+    async def read() -> None:
         with g4lidar.open(g4_simulator(virtual_time=False, faults=["stall@1.5s"]), stall_time=60) as lidar:
             lidar.start()
             with pytest.raises(errors.Timeout):
                 async for _ in lidar.scans_async(timeout=0.3):
                     pass
-        return count
 
-    assert asyncio.run(read()) > 10
+    asyncio.run(read())
 
 
 def test_a_lidar_in_a_loop_of_ones_own(g4_simulator: Make) -> None:

@@ -148,7 +148,9 @@ def test_raw_bytes_are_played(recorded: tuple[Path, list[g4lidar.Scan]], raw: Pa
     path, scans = recorded
     with g4lidar.open(raw, begin=1, end=2) as lidar:
         lidar.start()
-        assert 5 <= len(list(lidar.scans())) <= 7
+        some = list(lidar.scans())
+        assert 5 <= len(some) <= 7
+        assert 0 < some[0].stamp - os.stat(raw).st_mtime < 10
         assert player_of(lidar).length == pytest.approx(3.0, abs=0.5)  # without the time before the scan
 
 
@@ -290,17 +292,6 @@ def test_time_packets_are_counted() -> None:
     assert counts["parsed_bytes"] == 8
     assert counts["skipped_noise"] == 1
     assert counts["crc_matches"] == counts["crc_mismatches"] == 0
-
-
-def test_raw_bytes_of_a_file(g4_simulator: Make, recorded: tuple[Path, list[g4lidar.Scan]], tmp_path: Path) -> None:
-    path, scans = recorded
-    raw = tmp_path / "walk.bin"
-    raw.write_bytes(b"".join(item.data for item in g4lidar.Recording(path) if item.kind == "from_device"))
-    with g4lidar.open(raw) as lidar:
-        lidar.start()
-        again = list(lidar.scans())
-    assert len(again) >= len(scans)
-    assert 0 < again[0].stamp - os.stat(raw).st_mtime < 10
 
 
 READING = {
