@@ -6,6 +6,9 @@
 zig_version=0.17.1
 work=$PWD/build/portable
 glibc=2.28
+# Of the programs alone: their Debian package and their name.
+program_licences=(libboost1.81-dev:boost libcli11-dev:cli11 libfmt-dev:fmt libtinfo6:ncurses
+  nlohmann-json3-dev:nlohmann-json)
 
 # make_compiler <processor> <directory>: compilers for that processor there, with the static libraries of its sysroot.
 make_compiler() {
@@ -40,38 +43,49 @@ unpack_source() {
   mv "$work/source.new" "$work/source"
 }
 
-# build_portable <processor>: the programs, in $work/<processor>/root.
-build_portable() {
-  local processor=$1 build=$work/$1 inputs=$PWD/build/sysroot/portable-$1 include=()
+# set_options <processor>: sets `options`, what CMake is told to compile with zig and its libraries for that processor. The
+# module of Python exports one name, so that no other library gets between its parts; it uses the unwinder of GCC, as
+# Python does when it ends threads.
+set_options() {
+  local processor=$1 build=$work/$1 inputs=$PWD/build/sysroot/portable-$1 directory=$1-linux-gnu include libraries module
   run_quietly "Getting the libraries for $processor" scripts/sysroot "portable-$processor"
   make_compiler "$processor" "$build/compiler"
-  include=(-isystem "$inputs/usr/include/$processor-linux-gnu" -isystem "$inputs/usr/include")
+  include="-isystem $inputs/usr/include/$directory -isystem $inputs/usr/include"
+  libraries=$inputs/usr/lib/$directory
+  module="/usr/lib/$directory/libgcc_s.so.1 -Wl,--version-script=$work/source/packaging/portable/module.map"
+  export CCACHE_COMPILERCHECK="string:zig $zig_version $processor $glibc" CCACHE_BASEDIR=$PWD
+  options=(-DCMAKE_BUILD_TYPE=Release -DG4LIDAR_UNITE=ON -DG4LIDAR_DEVICE=ON
+    "-DCMAKE_C_COMPILER=$build/compiler/clang" "-DCMAKE_CXX_COMPILER=$build/compiler/clang++"
+    "-DCMAKE_AR=$build/compiler/ar" "-DCMAKE_RANLIB=$build/compiler/ranlib"
+    "-DCMAKE_CXX_FLAGS=$include -ffile-prefix-map=$CCACHE_BASEDIR=. -s"
+    "-DCMAKE_EXE_LINKER_FLAGS=-L$libraries" "-DCMAKE_MODULE_LINKER_FLAGS=-L$libraries $module"
+    "-DCMAKE_FIND_ROOT_PATH=$inputs" -DCMAKE_FIND_ROOT_PATH_MODE_INCLUDE=ONLY
+    -DCMAKE_FIND_ROOT_PATH_MODE_LIBRARY=ONLY -DCMAKE_FIND_ROOT_PATH_MODE_PACKAGE=ONLY
+    "-DCMAKE_LIBRARY_ARCHITECTURE=$directory")
+}
+
+# build_portable <processor>: the programs, in $work/<processor>/root; sets `options`.
+build_portable() {
+  local build=$work/$1
+  set_options "$1"
   (
-    export CCACHE_COMPILERCHECK="string:zig $zig_version $processor $glibc" CCACHE_BASEDIR=$PWD
     cd "$work/source" || exit
-    configure "$build/build" -DCMAKE_BUILD_TYPE=Release -DG4LIDAR_UNITE=ON -DG4LIDAR_DEVICE=ON \
+    configure "$build/build" "${options[@]}" "-Dfmt_DIR=$work/source/packaging/portable" \
       -DG4LIDAR_BUILD_TOOLS=ON -DG4LIDAR_BUILD_SERVE=ON -DG4LIDAR_BUILD_ROS2=OFF -DG4LIDAR_BUILD_C=OFF \
       -DG4LIDAR_BUILD_TESTS=OFF -DG4LIDAR_BUILD_FUZZ=OFF -DG4LIDAR_BUILD_EXAMPLES=OFF -DG4LIDAR_INSTALL=ON \
-      -DG4LIDAR_INSTALL_UDEV_RULE=ON "-DCMAKE_C_COMPILER=$build/compiler/clang" \
-      "-DCMAKE_CXX_COMPILER=$build/compiler/clang++" "-DCMAKE_AR=$build/compiler/ar" \
-      "-DCMAKE_RANLIB=$build/compiler/ranlib" "-DCMAKE_CXX_FLAGS=${include[*]} -ffile-prefix-map=$CCACHE_BASEDIR=. -s" \
-      "-DCMAKE_EXE_LINKER_FLAGS=-L$inputs/usr/lib/$processor-linux-gnu" \
-      "-DCMAKE_FIND_ROOT_PATH=$inputs" -DCMAKE_FIND_ROOT_PATH_MODE_INCLUDE=ONLY \
-      -DCMAKE_FIND_ROOT_PATH_MODE_LIBRARY=ONLY -DCMAKE_FIND_ROOT_PATH_MODE_PACKAGE=ONLY \
-      "-DCMAKE_LIBRARY_ARCHITECTURE=$processor-linux-gnu" "-Dfmt_DIR=$work/source/packaging/portable"
+      -DG4LIDAR_INSTALL_UDEV_RULE=ON
     build "$build/build" g4-dump g4-serve
   )
   rm -rf "$build/root"
   run_quietly "Installing them" cmake --install "$build/build" --prefix "$build/root"
 }
 
-# write_licences <processor> <directory>: the licences of what is linked into the programs.
+# write_licences <processor> <directory> <package:name>...: the licences of what is linked in, from these Debian packages.
 write_licences() {
   local documents=build/sysroot/portable-$1/usr/share/doc zig package
   zig=$(echo "$work"/zig/lib/python*/site-packages/ziglang)
   mkdir -p "$2"
-  for package in libboost1.81-dev:boost libcli11-dev:cli11 libexpected-dev:expected libfmt-dev:fmt libtinfo6:ncurses \
-    nlohmann-json3-dev:nlohmann-json zlib1g-dev:zlib libzstd-dev:zstd; do
+  for package in libexpected-dev:expected zlib1g-dev:zlib libzstd-dev:zstd "${@:3}"; do
     cp --dereference "$documents/${package%:*}/copyright" "$2/${package#*:}.txt"
   done
   for package in libcxx libcxxabi libunwind; do cp "$zig/lib/$package/LICENSE.TXT" "$2/$package.txt"; done
@@ -80,12 +94,12 @@ write_licences() {
 }
 
 # check_programs <file>...: fails if one needs what glibc 2.28 does not have: a newer version of a name, or a name without
-# a version, which may be missing when it is called.
+# a version, which may be missing when it is called. Python's names have none.
 check_programs() {
   local program
   for program in "$@"; do
     if ! readelf --wide --dyn-syms "$program" | awk -v newest="$glibc" '
-        $7 == "UND" && $8 != "" && $5 != "WEAK" && $8 !~ /@/ { print "without a version: " $8; bad = 1 }
+        $7 == "UND" && $8 != "" && $5 != "WEAK" && $8 !~ /@|^_?Py/ { print "without a version: " $8; bad = 1 }
         $7 == "UND" && match($8, /@GLIBC_[0-9.]+/) {
           split(substr($8, RSTART + 7), version, "."); split(newest, most, ".")
           if ($5 != "WEAK" && (version[1] > most[1] || version[2] + 0 > most[2] + 0)) { print "too new: " $8; bad = 1 }
@@ -121,7 +135,7 @@ make_portable() {
   cp -r "$root/lib/udev" "$to/lib"
   cp -r "$root"/share/{bash-completion,fish,man,zsh} "$to/share"
   cp "$work"/source/packaging/portable/{install.sh,README.md} "$work/source/LICENSE" "$to"
-  write_licences "$processor" "$to/licenses"
+  write_licences "$processor" "$to/licenses" "${program_licences[@]}"
   check_programs "$to"/bin/*
   check_no_addresses "$to"
   (cd "$to" && find . -type f -printf '%P\n' | sort | xargs sha256sum >"$work/sums")

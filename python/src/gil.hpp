@@ -3,9 +3,9 @@
 #pragma once
 
 #include <Python.h>
-#include <cxxabi.h>
 #include <unistd.h>
 
+#include <exception>
 #include <functional>
 #include <mutex>
 
@@ -19,7 +19,8 @@ template <class Call>
 [[gnu::noinline]] decltype(auto) in_python(const Call& call) {
   try {
     return call();
-  } catch (const abi::__forced_unwind&) {
+  } catch (...) {
+    if (std::current_exception()) throw;  // of C++
     while (true) ::pause();
   }
 }
