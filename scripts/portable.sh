@@ -43,11 +43,12 @@ unpack_source() {
   mv "$work/source.new" "$work/source"
 }
 
-# set_options <processor>: sets `options`, what CMake is told to compile with zig and its libraries for that processor. The
-# module of Python exports one name, so that no other library gets between its parts; it uses the unwinder of GCC, as
-# Python does when it ends threads.
+# set_options <processor>: sets `options`, those of CMake to compile for that processor with zig and these libraries.
+# The module of Python exports one name, so that no function of another library replaces one of its own; it has the
+# unwinder of GCC, as Python has where it ends threads.
 set_options() {
-  local processor=$1 build=$work/$1 inputs=$PWD/build/sysroot/portable-$1 directory=$1-linux-gnu include libraries module
+  local processor=$1 build=$work/$1 inputs=$PWD/build/sysroot/portable-$1 directory=$1-linux-gnu
+  local include libraries module
   run_quietly "Getting the libraries for $processor" scripts/sysroot "portable-$processor"
   make_compiler "$processor" "$build/compiler"
   include="-isystem $inputs/usr/include/$directory -isystem $inputs/usr/include"
@@ -80,7 +81,7 @@ build_portable() {
   run_quietly "Installing them" cmake --install "$build/build" --prefix "$build/root"
 }
 
-# write_licences <processor> <directory> <package:name>...: the licences of what is linked in, from these Debian packages.
+# write_licences <processor> <directory> <package:name>...: the licences of what is linked in, with these packages.
 write_licences() {
   local documents=build/sysroot/portable-$1/usr/share/doc zig package
   zig=$(echo "$work"/zig/lib/python*/site-packages/ziglang)

@@ -2,7 +2,7 @@
 # shellcheck shell=bash
 # The versions of Python on this machine. Sourced by scripts; needs bash.
 
-# find_pythons: prints "<minor> <program>" of each version of Python 3 that runs: those of PYTHONS (programs), or the ones
+# find_pythons: prints "<minor> <program>" of each version of Python 3 that runs: those of PYTHONS (programs), or those
 # in PATH and of pyenv.
 find_pythons() {
   local each

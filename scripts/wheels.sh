@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 # shellcheck shell=bash
-# Makes the wheels of the Python module and of the programs, for every Linux with glibc 2.28, and the source distribution.
-# Sourced by scripts/release; needs bash.
+# Makes the wheels of the Python module and of the programs, for every Linux with glibc 2.28, and the source
+# distribution. Sourced by scripts/release; needs bash.
 
 source scripts/portable.sh # the compiler
 source scripts/pythons.sh
@@ -80,11 +80,12 @@ make_tools() {
 
 # make_wheels <version> <dist>: all of them. Those for a Python that is not there are left out, with a line "SKIPPED".
 make_wheels() {
-  local pythons python last=9 environment
+  local pythons python last=9 environment headers=build/sysroot/portable-x86_64/usr/include/x86_64-linux-gnu
   build_portable x86_64 # sets `options`
   # Debian's headers of Python name those of the processor.
+  mkdir -p "$headers"
   while read -r python; do
-    ln -sfn "$python" build/sysroot/portable-x86_64/usr/include/x86_64-linux-gnu/
+    ln -sfn "$python" "$headers"
   done < <(compgen -G '/usr/include/x86_64-linux-gnu/python3.*')
   rm -f "$2"/*.whl
   mapfile -t pythons < <(find_pythons)
@@ -95,7 +96,9 @@ make_wheels() {
     make_module "$last" "${python#* }" "$2"
   done
   for python in 10 11 12; do
-    if ! compgen -G "$2/*-cp3$python-*.whl" >/dev/null; then echo "SKIPPED: the wheel for Python 3.$python, which is not here"; fi
+    if ! compgen -G "$2/*-cp3$python-*.whl" >/dev/null; then
+      echo "SKIPPED: the wheel for Python 3.$python, which is not here"
+    fi
   done
   if [[ ! ${environment:-} ]]; then return 1; fi
   make_tools "$1" "$2"
