@@ -56,7 +56,9 @@ if [ "$uninstall" ] && [ ! -e "$list" ]; then
   exit 1
 fi
 new=$(mktemp)
-trap 'rm -f "$new"' EXIT
+# However it ends, the list has what was written, so that --uninstall removes it.
+trap 'if [ -s "$new" ] && [ -d "$prefix/share/g4lidar" ]; then cp "$new" "$list"; fi; rm -f "$new"' EXIT
+trap 'exit 130' INT TERM HUP
 if ! make_directory "$prefix" 2>/dev/null || [ ! -w "$prefix" ]; then
   echo "No permission to write to $prefix: use sudo, or another PREFIX, such as $HOME/.local" >&2
   exit 1
@@ -83,7 +85,6 @@ case $prefix in /usr | /usr/local) ;; *) rules= ;; esac
   mv "$target.new" "$target" # a program that runs keeps its old file
   echo "$target" >>"$new"
 done
-cp "$new" "$list"
 if [ "$rules" ]; then
   apply_rules
 else
