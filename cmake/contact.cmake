@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-# Sets G4LIDAR_CONTACT_maintainer, _email, _homepage, _issues and _security: the lines of packaging/contact.
+# Sets G4LIDAR_CONTACT_maintainer, _email, _homepage, _issues, _downloads and _security: the lines of packaging/contact.
 
 file(STRINGS "${CMAKE_CURRENT_LIST_DIR}/../packaging/contact" lines REGEX "^[a-z]+=")
 foreach(line IN LISTS lines)

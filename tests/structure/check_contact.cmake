@@ -15,7 +15,7 @@ function(names file)
   endforeach()
 endfunction()
 
-foreach(key maintainer email homepage issues security)
+foreach(key maintainer email homepage issues downloads security)
   set(${key} "${G4LIDAR_CONTACT_${key}}")
   if("${${key}}" STREQUAL "")
     message(SEND_ERROR "packaging/contact has no ${key}")
@@ -33,12 +33,13 @@ names(
   "Issues = \"${issues}\"\n"
 )
 names(SUPPORT.md "${issues}" "${security}")
+names(README.md "FROM=${downloads}/")
 
 # An address of a placeholder that is none of these was forgotten when the others were replaced.
 foreach(file debian/control debian/changelog debian/copyright package.xml pyproject.toml SUPPORT.md README.md)
   file(STRINGS "${ROOT}/${file}" lines REGEX "example\\.org")
   foreach(line IN LISTS lines)
-    foreach(known email homepage issues security)
+    foreach(known downloads email issues homepage security)
       string(REPLACE "${${known}}" "" line "${line}")
     endforeach()
     if(line MATCHES "example\\.org")
