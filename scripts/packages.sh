@@ -72,7 +72,7 @@ packages_portable=(
   libboost1.81-dev
 )
 # shellcheck disable=SC2034
-packages_release=(binutils cmake git libgcc-s1 ninja-build python3-dev python3-venv)
+packages_release=(binutils ccache cmake debootstrap git gpg gpg-agent gpgconf libgcc-s1 ninja-build python3-dev python3-venv reprepro)
 
 # Everything that .ci/run needs.
 # shellcheck disable=SC2034

@@ -81,8 +81,8 @@ connect_root() {
 
 remove_root() {
   local each
-  for each in dev/pts proc; do
-    if mountpoint --quiet "$debian_root/$each"; then umount --lazy "$debian_root/$each"; fi
+  for each in ccache dev/pts proc; do
+    if mountpoint --quiet "$debian_root/$each"; then umount --lazy "$debian_root/$each" || return; fi
   done
   rm -rf --one-file-system "$debian_root" "$debian_root.log"
 }
