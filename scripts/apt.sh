@@ -69,7 +69,7 @@ make_apt() {
   build_packages bookworm "" "$scratch/bookworm" "" "${@:2}"
   build_packages trixie "~deb13" "$scratch/trixie" pkg.libg4lidar.ros2 "${@:2}" # all others are those of Debian 12
   mkdir -m 700 "$scratch/gnupg"
-  export GNUPGHOME=$scratch/gnupg
+  local -x GNUPGHOME=$scratch/gnupg
   if [[ ${G4LIDAR_SIGNING_KEY:-} ]]; then
     gpg --batch --quiet --import "$G4LIDAR_SIGNING_KEY"
   else
