@@ -15,7 +15,7 @@ namespace {
 constexpr session_times times;
 constexpr std::int64_t observed_ns = 50 * ms;
 /// A scan without bytes for this time has become silent.
-constexpr std::int64_t silence_ns = 500 * ms;
+constexpr std::int64_t pause_ns = 500 * ms;
 /// The time by which the head has its speed.
 constexpr std::int64_t spin_up_ns = 6'000 * ms;
 /// For the first packet, whatever else arrives; longer than the motor may spin up.
@@ -53,7 +53,7 @@ void live_run::follow(const observed_event& observed) {
 
 std::int64_t live_run::patience_ns() const {
   const bool has_packets = started_.first_packet_ns != 0;
-  if (has_packets || link_.boots() > started_.boots_before) return silence_ns;
+  if (has_packets || link_.boots() > started_.boots_before) return pause_ns;
   return started_.has_header ? times.first_packet_ns : times.start_ns;
 }
 
@@ -226,10 +226,10 @@ live_run::fate live_run::fate_of_silent() {
   if (link_.counts().packets > before) return fate::resumed;
   if (link_.is_over()) return fate::over;
   if (link_.boots() > started_.boots_before || started_.has_introduced_itself) return fate::booted;
-  constexpr int attempts = 3;
-  for (int i = 0; i < attempts && !link_.is_over() && talks(); ++i) {
+  constexpr int most = 3;
+  for (int i = 0; i < most && !link_.is_over() && talks(); ++i) {
     // Some models ignore queries as long as they scan.
-    if (i == attempts - 1) link_.stop();
+    if (i == most - 1) link_.stop();
     const exchange made = link_.ask(command::device_info, 800 * ms);
     if (made.packets > 0) return fate::resumed;
     if (!made.heard_nothing()) return fate::answers;

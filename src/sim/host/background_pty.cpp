@@ -64,9 +64,9 @@ class G4LIDAR_HIDDEN background_pty::state {
       }
       constexpr std::int64_t longest_ns = 3'600'000'000'000;
       sleep_ns = std::clamp<std::int64_t>(sleep_ns, 0, longest_ns);
-      constexpr std::int64_t second_ns = 1'000'000'000;
-      const timespec sleep{static_cast<std::time_t>(sleep_ns / second_ns),
-                           static_cast<long>(sleep_ns % second_ns)};
+      constexpr std::int64_t unit_ns = 1'000'000'000;
+      const timespec sleep{static_cast<std::time_t>(sleep_ns / unit_ns),
+                           static_cast<long>(sleep_ns % unit_ns)};
       if (::ppoll(waiting.data(), waiting.size(), &sleep, nullptr) > 0 && waiting[0].revents != 0) {
         eventfd_t rung = 0;
         [[maybe_unused]] const int ignored = ::eventfd_read(wake_descriptor_.get(), &rung);

@@ -218,9 +218,9 @@ result<void> serve(std::span<pty_port> ports, int stop, const std::function<void
       waiting.push_back({handles.visitors, POLLIN, 0});
     }
     if (after_each) after_each();
-    constexpr std::int64_t second_ns = 1'000'000'000;
-    const timespec sleep{static_cast<std::time_t>(sleep_ns / second_ns),
-                         static_cast<long>(sleep_ns % second_ns)};
+    constexpr std::int64_t unit_ns = 1'000'000'000;
+    const timespec sleep{static_cast<std::time_t>(sleep_ns / unit_ns),
+                         static_cast<long>(sleep_ns % unit_ns)};
     const int ready =
         ::ppoll(waiting.data(), waiting.size(), sleep_ns == forever_ns ? nullptr : &sleep, nullptr);
     if (ready < 0 && errno != EINTR) {

@@ -12,7 +12,7 @@ namespace g4_tool::acceptance {
 namespace {
 
 using enum command;
-using value = kept_settings::value;
+using known_value = kept_settings::value;
 
 constexpr std::int32_t protection_off = 1;
 
@@ -21,10 +21,10 @@ bool set_frequency(lidar_link& link, std::int32_t wanted_chz) {
   constexpr int near_chz = 5;  // half of the smallest step
   constexpr int most_steps = 60;
   constexpr int most_without_effect = 5;
-  value last;
+  known_value last;
   int without_effect = 0;
   for (int i = 0; i < most_steps && without_effect < most_without_effect; ++i) {
-    const value now = link.number(frequency_query);
+    const known_value now = link.number(frequency_query);
     if (!now) return false;
     const int missing = wanted_chz - *now;
     if (std::abs(missing) <= near_chz) return true;
@@ -42,7 +42,7 @@ bool set_rate(lidar_link& link, std::int32_t wanted_code) {
   constexpr int most_steps = 12;
   bool has_query = true;  // some firmware answers only the step
   for (int i = 0; i < most_steps; ++i) {
-    const value now = has_query ? link.number(sample_rate_query) : std::nullopt;
+    const known_value now = has_query ? link.number(sample_rate_query) : std::nullopt;
     has_query = now.has_value();
     if (now == wanted_code || link.ask(sample_rate_next).number() == wanted_code) return true;
   }
@@ -79,7 +79,7 @@ bool kept_settings::is_changed() const { return std::ranges::any_of(all_, &kept:
 
 bool kept_settings::restore(lidar_link& link) {
   constexpr int tries = 3;
-  const auto set_back = [&](setting setting, auto set, const value& wanted) {
+  const auto set_back = [&](setting setting, auto set, const known_value& wanted) {
     kept& its = at(setting);
     if (its.is_changed && wanted) its.is_changed = !set(link, *wanted);
   };
