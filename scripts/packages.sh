@@ -69,10 +69,10 @@ packages_sysroot=(
 # shellcheck disable=SC2034
 packages_portable=(
   libudev-dev libexpected-dev libcli11-dev libfmt-dev nlohmann-json3-dev libzstd-dev zlib1g-dev libncurses-dev
-  libboost1.81-dev
+  libboost1.81-dev libgcc-s1
 )
 # shellcheck disable=SC2034
-packages_release=(binutils ccache cmake debootstrap git gpg gpg-agent gpgconf libgcc-s1 ninja-build python3-dev python3-venv reprepro)
+packages_release=(binutils ccache cmake debootstrap git gpg gpg-agent gpgconf ninja-build python3-dev python3-venv reprepro)
 
 # Everything that .ci/run needs.
 # shellcheck disable=SC2034

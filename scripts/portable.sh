@@ -6,10 +6,6 @@
 zig_version=0.17.1
 work=$PWD/build/portable
 glibc=2.28
-# Of the programs alone: their Debian package and their name.
-program_licences=(libboost1.81-dev:boost libcli11-dev:cli11 libfmt-dev:fmt libtinfo6:ncurses
-  nlohmann-json3-dev:nlohmann-json)
-
 # make_compiler <processor> <directory>: compilers for that processor there, with the static libraries of its sysroot.
 make_compiler() {
   local target=$1-linux-gnu python=$work/zig/bin/python tool
@@ -53,7 +49,7 @@ set_options() {
   make_compiler "$processor" "$build/compiler"
   include="-isystem $inputs/usr/include/$directory -isystem $inputs/usr/include"
   libraries=$inputs/usr/lib/$directory
-  module="/usr/lib/$directory/libgcc_s.so.1 -Wl,--version-script=$work/source/packaging/portable/module.map"
+  module="$libraries/libgcc_s.so.1 -Wl,--version-script=$work/source/packaging/portable/module.map"
   export CCACHE_COMPILERCHECK="string:zig $zig_version $processor $glibc" CCACHE_BASEDIR=$PWD
   options=(-DCMAKE_BUILD_TYPE=Release -DG4LIDAR_UNITE=ON -DG4LIDAR_DEVICE=ON
     "-DCMAKE_C_COMPILER=$build/compiler/clang" "-DCMAKE_CXX_COMPILER=$build/compiler/clang++"
@@ -63,9 +59,13 @@ set_options() {
     "-DCMAKE_FIND_ROOT_PATH=$inputs" -DCMAKE_FIND_ROOT_PATH_MODE_INCLUDE=ONLY
     -DCMAKE_FIND_ROOT_PATH_MODE_LIBRARY=ONLY -DCMAKE_FIND_ROOT_PATH_MODE_PACKAGE=ONLY
     "-DCMAKE_LIBRARY_ARCHITECTURE=$directory")
+  if [[ $processor != x86_64 ]]; then
+    options+=(-DCMAKE_SYSTEM_NAME=Linux "-DCMAKE_SYSTEM_PROCESSOR=$processor" -DCMAKE_FIND_ROOT_PATH_MODE_PROGRAM=NEVER)
+  fi
 }
 
-# build_portable <processor>: the programs, in $work/<processor>/root; sets `options`.
+# build_portable <processor>: the programs, in $work/<processor>/root; sets `options`. The man pages of another processor,
+# which the programs print, are those of x86_64, which is built first.
 build_portable() {
   local build=$work/$1
   set_options "$1"
@@ -79,27 +79,63 @@ build_portable() {
   )
   rm -rf "$build/root"
   run_quietly "Installing them" cmake --install "$build/build" --prefix "$build/root"
+  if [[ $1 != x86_64 ]]; then cp -r "$work/x86_64/root/share/man" "$build/root/share"; fi
 }
 
-# write_licences <processor> <directory> <package:name>...: the licences of what is linked in, with these packages.
+# write_licences <processor> <directory> programs|module: the licences of what is linked into them, and its versions to
+# $work/linked-in. Of Boost's, which have 2 MB, those of the files that are used.
 write_licences() {
-  local documents=build/sysroot/portable-$1/usr/share/doc zig package
+  local sysroot=build/sysroot/portable-$1 zig part name url licence package text version
+  local modules=${environment:-}/lib/python3.*/site-packages
   zig=$(echo "$work"/zig/lib/python*/site-packages/ziglang)
   mkdir -p "$2"
-  for package in libexpected-dev:expected zlib1g-dev:zlib libzstd-dev:zstd "${@:3}"; do
-    cp --dereference "$documents/${package%:*}/copyright" "$2/${package#*:}.txt"
-  done
-  for package in libcxx libcxxabi libunwind; do cp "$zig/lib/$package/LICENSE.TXT" "$2/$package.txt"; done
-  cp "$zig/LICENSE" "$2/zig.txt"
+  while read -r part name url licence; do
+    if [[ $part != all && $part != "$3" ]]; then continue; fi
+    package=${url##*/}
+    case $url in
+      deb/*)
+        text=$sysroot/usr/share/doc/$package/copyright
+        version=$(awk -v name="$package" '$1 == name { print $2 "?arch=" $3 "&distro=debian-12&upstream=" $4 }' \
+          "$sysroot/packages")
+        ;;
+      generic/*) text=$zig/lib/$name/LICENSE.TXT version=$("$work/$1/compiler/clang" --version | awk '{ print $3; exit }') ;;
+      */ziglang) text=$zig/LICENSE version=$zig_version ;;
+      */nanobind)
+        text=$(echo $modules/nanobind-*.dist-info/licenses/LICENSE)
+        version=${text##*/nanobind-} version=${version%%.dist-info*}
+        ;;
+      */robin-map)
+        text=$(echo $modules/nanobind/ext/robin_map/include/tsl/robin_map.h)
+        version=$(sed -n 's/^#define TSL_RH_VERSION_[A-Z]* //p' "${text%/*}/robin_growth_policy.h" | paste -s -d .)
+        ;;
+    esac
+    if [[ ! $version ]]; then return 1; fi
+    case $name in
+      boost) awk 'BEGIN { RS = ""; ORS = "\n\n" }
+        /^Files: \*\n|\nLicense: BSL-1.0 and Zlib|^License: (BSL-1.0|Zlib)\n/' "$text" ;;
+      robin-map) sed '/\*\//q' "$text" ;;
+      *) cat "$text" ;;
+    esac >"$2/$name.txt"
+    printf '%s\t%s\tpkg:%s@%s\t%s\n' "$3" "$name" "$url" "$version" "$licence" >>"$work/linked-in"
+  done < <(grep -v '^#' "$work/source/packaging/portable/linked-in.txt")
   cp "$work/source/LICENSE" "$2/g4lidar.txt"
 }
 
+# write_sbom <version> <file>: what is linked into all that was made, as CycloneDX has it.
+write_sbom() {
+  if [[ ! -x $work/sbom/bin/python ]]; then run_quietly "Making a place for CycloneDX" python3 -m venv "$work/sbom"; fi
+  run_quietly "Fetching CycloneDX" "$work/sbom/bin/pip" install --quiet --disable-pip-version-check \
+    'cyclonedx-python-lib[json-validation]==11.12.0'
+  "$work/sbom/bin/python" packaging/portable/sbom.py "$1" "$2" <"$work/linked-in"
+}
+
 # check_programs <file>...: fails if one needs what glibc 2.28 does not have: a newer version of a name, or a name without
-# a version, which may be missing when it is called. Python's names have none.
+# a version, which may be missing when it is called. Python's names have none. Nor may one need a library of others.
 check_programs() {
   local program
   for program in "$@"; do
-    if ! readelf --wide --dyn-syms "$program" | awk -v newest="$glibc" '
+    if readelf --dynamic "$program" | grep NEEDED | grep -vE '\[(lib(c|m|dl|pthread|rt|gcc_s)|ld-linux-.*)\.so\.[0-9]\]' \
+      || ! readelf --wide --dyn-syms "$program" | awk -v newest="$glibc" '
         $7 == "UND" && $8 != "" && $5 != "WEAK" && $8 !~ /@|^_?Py/ { print "without a version: " $8; bad = 1 }
         $7 == "UND" && match($8, /@GLIBC_[0-9.]+/) {
           split(substr($8, RSTART + 7), version, "."); split(newest, most, ".")
@@ -136,7 +172,7 @@ make_portable() {
   cp -r "$root/lib/udev" "$to/lib"
   cp -r "$root"/share/{bash-completion,fish,man,zsh} "$to/share"
   cp "$work"/source/packaging/portable/{install.sh,README.md} "$work/source/LICENSE" "$to"
-  write_licences "$processor" "$to/licenses" "${program_licences[@]}"
+  write_licences "$processor" "$to/licenses" programs
   check_programs "$to"/bin/*
   check_no_addresses "$to"
   (cd "$to" && find . -type f -printf '%P\n' | sort | xargs sha256sum >"$work/sums")
