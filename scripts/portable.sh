@@ -86,7 +86,8 @@ build_portable() {
 # $work/linked-in. Of Boost's, which have 2 MB, those of the files that are used.
 write_licences() {
   local sysroot=build/sysroot/portable-$1 zig part name url licence package text version
-  local modules=${environment:-}/lib/python3.*/site-packages
+  local modules
+  modules=$(echo "${environment:-}"/lib/python3.*/site-packages)
   zig=$(echo "$work"/zig/lib/python*/site-packages/ziglang)
   mkdir -p "$2"
   while read -r part name url licence; do
@@ -98,14 +99,17 @@ write_licences() {
         version=$(awk -v name="$package" '$1 == name { print $2 "?arch=" $3 "&distro=debian-12&upstream=" $4 }' \
           "$sysroot/packages")
         ;;
-      generic/*) text=$zig/lib/$name/LICENSE.TXT version=$("$work/$1/compiler/clang" --version | awk '{ print $3; exit }') ;;
+      generic/*)
+        text=$zig/lib/$name/LICENSE.TXT
+        version=$("$work/$1/compiler/clang" --version | awk '{ print $3; exit }')
+        ;;
       */ziglang) text=$zig/LICENSE version=$zig_version ;;
       */nanobind)
-        text=$(echo $modules/nanobind-*.dist-info/licenses/LICENSE)
+        text=$(echo "$modules"/nanobind-*.dist-info/licenses/LICENSE)
         version=${text##*/nanobind-} version=${version%%.dist-info*}
         ;;
       */robin-map)
-        text=$(echo $modules/nanobind/ext/robin_map/include/tsl/robin_map.h)
+        text=$modules/nanobind/ext/robin_map/include/tsl/robin_map.h
         version=$(sed -n 's/^#define TSL_RH_VERSION_[A-Z]* //p' "${text%/*}/robin_growth_policy.h" | paste -s -d .)
         ;;
     esac

@@ -43,14 +43,15 @@ pack_wheel() {
   mv "$packed"/*.whl "$3"
 }
 
-# make_module <minor> <python> <processor> <dist>: the wheel of the module for this Python; sets `environment`. The headers
-# of Python and the stubs, which need a module that runs, are those of x86_64, which is made first.
+# make_module <minor> <python> <processor> <dist>: the wheel of the module for this Python; sets `environment`. The
+# headers of Python and the stubs, which need a module that runs, are those of x86_64, which is made first.
 make_module() {
   local wheels=$work/wheels/3.$1-$3 info cross=()
   make_environment "$1" "$2"
   if [[ $3 != x86_64 ]]; then
     cross=(--config-settings=build.targets=_g4lidar
-      "--config-settings=cmake.define.NB_SUFFIX=.cpython-3$1-$3-linux-gnu.so" "--config-settings=cmake.define.NB_SUFFIX_S=.abi3.so")
+      "--config-settings=cmake.define.NB_SUFFIX=.cpython-3$1-$3-linux-gnu.so"
+      "--config-settings=cmake.define.NB_SUFFIX_S=.abi3.so")
   fi
   rm -rf "$wheels"
   (
@@ -58,8 +59,8 @@ make_module() {
     IFS=';'
     if command -v ccache >/dev/null; then export CMAKE_CXX_COMPILER_LAUNCHER=ccache; fi
     export CMAKE_BUILD_PARALLEL_LEVEL=${CMAKE_BUILD_PARALLEL_LEVEL:-$(nproc)} _PYTHON_HOST_PLATFORM=linux-$3
-    run_quietly "Building the wheel for Python 3.$1, $3" "$environment/bin/pip" wheel --quiet --disable-pip-version-check \
-      --no-build-isolation --no-deps -w "$wheels" "--config-settings=cmake.args=${options[*]}" "${cross[@]}" .
+    run_quietly "Building the wheel for Python 3.$1, $3" "$environment/bin/pip" wheel --quiet \
+      --disable-pip-version-check --no-build-isolation --no-deps -w "$wheels" "--config-settings=cmake.args=${options[*]}" "${cross[@]}" .
   )
   "$environment/bin/wheel" unpack --dest "$wheels" "$wheels"/*.whl >/dev/null
   info=$(echo "$wheels"/*/*.dist-info)
@@ -82,8 +83,9 @@ make_tools() {
   pack_wheel "$wheel" "$2" "$3"
 }
 
-# make_wheels <version> <dist>: all of them, for `processors`. Those for a Python that is not there are left out, with a line
-# "SKIPPED"; --final refuses that.
+# make_wheels <version> <dist>: all of them, for `processors` of scripts/release. Those for a Python that is not there are
+# left out, with a line "SKIPPED"; --final refuses that.
+# shellcheck disable=SC2154
 make_wheels() {
   local pythons python last processor environment headers
   rm -rf "$2"/*.whl "$work/wheels"

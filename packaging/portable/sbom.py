@@ -28,7 +28,8 @@ if not parts:
 
 licences = LicenseFactory()
 root = Component(
-    name="g4lidar", version=version, type=ComponentType.APPLICATION, bom_ref="g4lidar", licenses=[licences.make_from_string("MIT")]
+    name="g4lidar", version=version, type=ComponentType.APPLICATION, bom_ref="g4lidar",
+    licenses=[licences.make_from_string("MIT")],
 )
 bom = Bom(serial_number=uuid.uuid5(uuid.NAMESPACE_URL, "g4lidar " + version))
 bom.metadata.component = root
