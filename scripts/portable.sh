@@ -6,7 +6,9 @@
 zig_version=0.17.1
 work=$PWD/build/portable
 glibc=2.28
-# make_compiler <processor> <directory>: compilers for that processor there, with the static libraries of its sysroot.
+
+# make_compiler <processor> <directory>: compilers for that processor there. zig has the baud rates of glibc 2.42, which
+# are numbers; an older glibc returns codes: include/termios.h.
 make_compiler() {
   local target=$1-linux-gnu python=$work/zig/bin/python tool
   if [[ ! -x $python || $("$python" -m ziglang version 2>/dev/null) != "$zig_version" ]]; then
@@ -15,7 +17,13 @@ make_compiler() {
     run_quietly "Fetching zig $zig_version" \
       "$work/zig/bin/pip" install --quiet --disable-pip-version-check "ziglang==$zig_version"
   fi
-  mkdir -p "$2"
+  mkdir -p "$2/include"
+  {
+    echo '#include_next <termios.h>'
+    sed -n 's/^#define *__\(B[0-9][0-9]*\)[ \t].*/#undef \1\n#define \1 __\1/p' \
+      "$work"/zig/lib/python*/site-packages/ziglang/lib/libc/include/generic-glibc/bits/termios{,-cbaud}.h
+  } >"$2/include/termios.h"
+  grep -q '__B230400' "$2/include/termios.h"
   # ccache recognises clang by its name.
   for tool in clang:cc clang++:c++ ar:ar ranlib:ranlib; do
     {
@@ -47,7 +55,7 @@ set_options() {
   local include libraries module
   run_quietly "Getting the libraries for $processor" scripts/sysroot "portable-$processor"
   make_compiler "$processor" "$build/compiler"
-  include="-isystem $inputs/usr/include/$directory -isystem $inputs/usr/include"
+  include="-I$build/compiler/include -isystem $inputs/usr/include/$directory -isystem $inputs/usr/include"
   libraries=$inputs/usr/lib/$directory
   module="$libraries/libgcc_s.so.1 -Wl,--version-script=$work/source/packaging/portable/module.map"
   export CCACHE_COMPILERCHECK="string:zig $zig_version $processor $glibc" CCACHE_BASEDIR=$PWD
