@@ -61,7 +61,7 @@ packages_browser=(chromium chromium-driver fonts-dejavu-core python3-selenium)
 # scripts/sysroot.
 # shellcheck disable=SC2034
 packages_sysroot=(
-  libc6-dev libudev-dev libexpected-dev libcli11-dev libfmt-dev nlohmann-json3-dev libzstd-dev libpython3-dev
+  libc6-dev libudev-dev libexpected-dev libcli11-dev libfmt-dev nlohmann-json3-dev libzstd-dev
   zlib1g-dev
 )
 
