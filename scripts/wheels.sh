@@ -7,19 +7,6 @@ source scripts/portable.sh # the compiler
 source scripts/pythons.sh
 wheel_needs=(auditwheel==6.8.2 build==1.6.1 nanobind==3.1.0 numpy scikit-build-core==1.1.2 wheel==0.48.0)
 
-# make_environment <minor> <python>: sets `environment`, one of this Python with what makes wheels.
-make_environment() {
-  local made_of="$2 ${wheel_needs[*]}"
-  environment=$work/python-3.$1
-  if [[ ! -e $environment/made_of || $(<"$environment/made_of") != "$made_of" ]]; then
-    rm -rf "$environment"
-    run_quietly "Making a place for Python 3.$1" "$2" -m venv "$environment"
-    run_quietly "Fetching what makes wheels" \
-      "$environment/bin/pip" install --quiet --disable-pip-version-check "${wheel_needs[@]}"
-    echo "$made_of" >"$environment/made_of"
-  fi
-}
-
 # pack_wheel <directory> <processor> <dist>: checks an unpacked wheel, names its licences, and packs it for manylinux.
 pack_wheel() {
   local packed=$work/packed platform=manylinux_2_28_$2 info programs
@@ -47,7 +34,8 @@ pack_wheel() {
 # headers of Python and the stubs, which need a module that runs, are those of x86_64, which is made first.
 make_module() {
   local wheels=$work/wheels/3.$1-$3 info cross=()
-  make_environment "$1" "$2"
+  fetch "python-3.$1" "$2" "${wheel_needs[@]}"
+  environment=$work/python-3.$1
   if [[ $3 != x86_64 ]]; then
     cross=(--config-settings=build.targets=_g4lidar
       "--config-settings=cmake.define.NB_SUFFIX=.cpython-3$1-$3-linux-gnu.so"
