@@ -2,7 +2,6 @@
 // However a run ends, the settings of the lidar are those that it had before.
 #include <gtest/gtest.h>
 
-#include <functional>
 #include <string>
 #include <string_view>
 

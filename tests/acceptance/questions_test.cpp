@@ -3,11 +3,9 @@
 // answers are those of the simulator's options.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <functional>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include "bench.hpp"

@@ -8,7 +8,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 #include <chrono>
-#include <thread>
 
 #include <csignal>
 #include <string>

@@ -7,10 +7,7 @@
 #include <termios.h>
 
 #include <algorithm>
-#include <array>
-#include <cstdint>
 #include <functional>
-#include <memory>
 #include <sstream>
 #include <string>
 #include <string_view>

@@ -6,8 +6,6 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstdint>
-#include <memory>
 #include <string>
 #include <string_view>
 

@@ -2,7 +2,6 @@
 // The faults of a G4 with lidars of other models: two-way ones, ones that DTR drives, one-way ones.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cstdint>
 #include <string>
 #include <string_view>

@@ -3,10 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
-#include <memory>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "diagnostics/agreement.hpp"
 #include "diagnostics/odd_links.hpp"

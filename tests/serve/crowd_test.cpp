@@ -3,9 +3,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cstddef>
 #include <memory>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "client_registry.hpp"
@@ -71,6 +73,25 @@ TEST_F(Crowd, FiveHundred_AllAreAnswered) {
   }
   EXPECT_GE(opened, static_cast<int>(places) - 1);
   EXPECT_TRUE(gets_scans(*first));
+  EXPECT_EQ(end().code, 128 + SIGTERM);
+}
+
+TEST_F(Crowd, RequestsOfAPause_AreReadBeforeOthersTakeTheirPlaces) {
+  begin();
+  const std::string request = "GET /status.json HTTP/1.1\r\nHost: localhost\r\n\r\n";
+  std::vector<raw_client> all;
+  for (int i = 0; i < 58; ++i) all.emplace_back(port_);
+  raw_client last(port_);
+  last.send(request);
+  ASSERT_THAT(last.read_until("\r\n\r\n"), StartsWith("HTTP/1.1 200"));  // all are accepted
+  running_->send(SIGSTOP);
+  for (int i = 0; i < 10; ++i) all.emplace_back(port_);
+  for (auto each = all.rbegin(); each != all.rend(); ++each) each->send(request);
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  running_->send(SIGCONT);
+  for (raw_client& each : all) {
+    EXPECT_THAT(each.read_until("\r\n\r\n"), StartsWith("HTTP/1.1 200"));
+  }
   EXPECT_EQ(end().code, 128 + SIGTERM);
 }
 

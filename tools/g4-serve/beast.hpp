@@ -12,7 +12,6 @@
 #include <boost/beast/http/message.hpp>
 #include <boost/beast/websocket/stream_fwd.hpp>
 #include <chrono>
-#include <string>
 
 namespace g4_tool {
 

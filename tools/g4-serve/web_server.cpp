@@ -15,7 +15,6 @@
 #include <thread>
 
 #include "beast.hpp"
-#include "cli/logger.hpp"
 #include "host_guard.hpp"
 #include "http_answers.hpp"
 #include "http_connection.hpp"
@@ -33,7 +32,6 @@ class web_server::loop {
       : clients_(clients), answers_(std::move(guard), clients) {
     static_cast<void>(tries([&] { listening_.assign(asio::ip::tcp::v6(), listening.get()); }));
     static_cast<void>(listening.release());
-    wait_for_connections();
     thread_ = std::thread([this] { run(); });
   }
   loop(const loop&) = delete;
@@ -72,7 +70,7 @@ class web_server::loop {
     // Without memory the operation ends that needed it, and with it its connection.
     while (!io_.stopped()) {
       tries([this] {
-        if (!waits_) wait_for_connections();
+        wait_for_connections();
         io_.run();
       });
     }
@@ -94,10 +92,14 @@ class web_server::loop {
   }
 
   void wait_for_connections() {
+    if (waits_) return;
     const auto accept = [this](error_code) {
       waits_ = false;
-      accept_all();
-      wait_for_connections();
+      // What has come in the meantime is read first.
+      asio::post(io_, [this] {
+        accept_all();
+        wait_for_connections();
+      });
     };
     if (may_accept_at() <= clock::now()) {
       listening_.async_wait(listening_.wait_read, accept);
