@@ -32,6 +32,7 @@ class web_server::loop {
       : clients_(clients), answers_(std::move(guard), clients) {
     static_cast<void>(tries([&] { listening_.assign(asio::ip::tcp::v6(), listening.get()); }));
     static_cast<void>(listening.release());
+    wait_for_connections();
     thread_ = std::thread([this] { run(); });
   }
   loop(const loop&) = delete;
@@ -70,7 +71,7 @@ class web_server::loop {
     // Without memory the operation ends that needed it, and with it its connection.
     while (!io_.stopped()) {
       tries([this] {
-        wait_for_connections();
+        if (!waits_) wait_for_connections();
         io_.run();
       });
     }
@@ -92,26 +93,23 @@ class web_server::loop {
   }
 
   void wait_for_connections() {
-    if (waits_) return;
-    const auto accept = [this](error_code) {
+    listening_.async_wait(listening_.wait_read, [this](error_code) {
       waits_ = false;
-      // What has come in the meantime is read first.
-      asio::post(io_, [this] {
-        accept_all();
+      // The timer ends after what has come until now was read.
+      pause_.expires_at(std::max(may_accept_at(), clock::now()));
+      pause_.async_wait([this](error_code) {
+        waits_ = false;
+        accept_all(pause_.expiry());
         wait_for_connections();
       });
-    };
-    if (may_accept_at() <= clock::now()) {
-      listening_.async_wait(listening_.wait_read, accept);
-    } else {
-      pause_.expires_at(may_accept_at());
-      pause_.async_wait(accept);
-    }
+      waits_ = true;
+    });
     waits_ = true;
   }
 
-  void accept_all() {
-    while (may_accept_at() <= clock::now()) {
+  /// `now`: when all that had come was read.
+  void accept_all(clock::time_point now) {
+    while (may_accept_at() <= now) {
       socket_fd socket(::accept4(listening_.native_handle(), nullptr, nullptr, SOCK_CLOEXEC));
       const bool is_full = connections_.size() >= most_connections;
       // No sockets are left: end one connection and try again later.
