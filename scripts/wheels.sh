@@ -72,7 +72,7 @@ make_tools() {
 }
 
 # make_wheels <version> <dist>: all of them, for `processors` of scripts/release. Those for a Python that is not there are
-# left out, with a line "SKIPPED"; --final refuses that.
+# left out, without PYTHONS with a line "SKIPPED"; --final refuses that.
 # shellcheck disable=SC2154
 make_wheels() {
   local pythons python last processor environment headers
@@ -84,7 +84,7 @@ make_wheels() {
       echo "scripts/release --final: the wheels need Python 3.$python" >&2
       return 1
     fi
-    echo "SKIPPED: the wheel for Python 3.$python, which is not here"
+    if [[ ! ${PYTHONS:-} ]]; then echo "SKIPPED: the wheel for Python 3.$python, which is not here"; fi
   done
   for processor in "${processors[@]}"; do
     build_portable "$processor" # sets `options`
