@@ -59,6 +59,28 @@ make_root() {
   echo "Made a minimal Debian ($release) in $((SECONDS - begin)) s"
 }
 
+# For scripts in the root, by `source /tmp/functions`. files: those of the root, without those of apt and the dynamic
+# linker. wait_for <command>...: at most a minute.
+files() {
+  find / -xdev '(' -path /proc -o -path /dev -o -path /tmp -o -path /var/cache -o -path /var/lib/apt \
+    -o -path /var/lib/dpkg -o -path /var/log -o -path /etc/ld.so.cache ')' -prune -o -print | sort
+}
+wait_for() {
+  local i
+  for ((i = 0; i < 600; ++i)); do
+    if "$@" 2>/dev/null; then return; fi
+    sleep 0.1
+  done
+  echo "not within a minute: $*" >&2
+  return 1
+}
+# runs <port>: whether g4-serve is there, and has a lidar that runs.
+runs() (
+  exec 3<>"/dev/tcp/127.0.0.1/$1" || exit
+  printf 'GET /status.json HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n' >&3
+  grep -q '"state":"running"' <&3
+)
+
 # connect_root: its apt, its pip and its name service reach the same servers as this machine.
 connect_root() {
   chmod 755 "$debian_root" # as every root directory: mktemp gives it to one user
@@ -77,6 +99,7 @@ connect_root() {
   # Pseudo-terminals of its own, for the simulated G4.
   mount -t devpts -o newinstance,gid=5,ptmxmode=666,mode=620 devpts "$debian_root/dev/pts"
   ln -sf pts/ptmx "$debian_root/dev/ptmx"
+  declare -f files wait_for runs >"$debian_root/tmp/functions"
 }
 
 remove_root() {
