@@ -33,13 +33,11 @@ pack_wheel() {
 # make_module <minor> <python> <processor> <dist>: the wheel of the module for this Python; sets `environment`. The
 # headers of Python and the stubs, which need a module that runs, are those of x86_64, which is made first.
 make_module() {
-  local wheels=$work/wheels/3.$1-$3 info cross=()
+  local wheels=$work/wheels/3.$1-$3 suffix=.cpython-3$1-$3-linux-gnu.so info cross=()
   fetch "python-3.$1" "$2" "${wheel_needs[@]}"
   environment=$work/python-3.$1
   if [[ $3 != x86_64 ]]; then
-    cross=(--config-settings=build.targets=_g4lidar
-      "--config-settings=cmake.define.NB_SUFFIX=.cpython-3$1-$3-linux-gnu.so"
-      "--config-settings=cmake.define.NB_SUFFIX_S=.abi3.so")
+    cross=(--config-settings=build.targets=_g4lidar)
   fi
   rm -rf "$wheels"
   (
@@ -47,11 +45,14 @@ make_module() {
     IFS=';'
     if command -v ccache >/dev/null; then export CMAKE_CXX_COMPILER_LAUNCHER=ccache; fi
     export CMAKE_BUILD_PARALLEL_LEVEL=${CMAKE_BUILD_PARALLEL_LEVEL:-$(nproc)} _PYTHON_HOST_PLATFORM=linux-$3
+    export SETUPTOOLS_EXT_SUFFIX=$suffix
     run_quietly "Building the wheel for Python 3.$1, $3" "$environment/bin/pip" wheel --quiet \
       --disable-pip-version-check --no-build-isolation --no-deps -w "$wheels" "--config-settings=cmake.args=${options[*]}" "${cross[@]}" .
   )
   "$environment/bin/wheel" unpack --dest "$wheels" "$wheels"/*.whl >/dev/null
   info=$(echo "$wheels"/*/*.dist-info)
+  if (($1 >= 12)); then suffix=.abi3.so; fi
+  test -s "${info%/*}/g4lidar/_g4lidar$suffix"
   if [[ $3 != x86_64 ]]; then cp "$work/wheels/3.$1-x86_64"/*/g4lidar/_g4lidar.pyi "${info%/*}/g4lidar"; fi
   write_licences "$3" "$info/licenses" module
   pack_wheel "${info%/*}" "$3" "$4"
