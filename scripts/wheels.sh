@@ -72,12 +72,11 @@ make_tools() {
   pack_wheel "$wheel" "$2" "$3"
 }
 
-# make_wheels <version> <dist>: all of them, for `processors` of scripts/release. Those for a Python that is not there are
-# left out, without PYTHONS with a line "SKIPPED"; --final refuses that.
+# need_pythons: sets `pythons`, those for make_wheels. Without PYTHONS, prints a line "SKIPPED" for each wheel whose Python
+# is not here; --final refuses that.
 # shellcheck disable=SC2154
-make_wheels() {
-  local pythons python last processor environment headers
-  rm -rf "$2"/*.whl "$work/wheels"
+need_pythons() {
+  local python
   mapfile -t pythons < <(find_pythons)
   for python in 10 11 '1[2-9]'; do
     if printf '%s\n' "${pythons[@]}" | grep -q "^$python "; then continue; fi
@@ -87,6 +86,13 @@ make_wheels() {
     fi
     if [[ ! ${PYTHONS:-} ]]; then echo "SKIPPED: the wheel for Python 3.$python, which is not here"; fi
   done
+}
+
+# make_wheels <version> <dist>: all of them, for `processors` of scripts/release and `pythons`.
+# shellcheck disable=SC2154
+make_wheels() {
+  local python last processor environment headers
+  rm -rf "$2"/*.whl "$work/wheels"
   for processor in "${processors[@]}"; do
     build_portable "$processor" # sets `options`
     # Debian's headers of Python name those of the processor.
