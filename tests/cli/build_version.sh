@@ -40,7 +40,7 @@ cmake -DTO="$PWD/version.cpp" -P tree/cmake/build_version.cmake
 
 # refuse <expected message>: scripts/release --final.
 refuse() {
-  if tree/scripts/release --final --source >release.txt 2>&1; then
+  if PYTHONS=none tree/scripts/release --final --source --wheels >release.txt 2>&1; then
     echo "scripts/release --final is not refused: $1" >&2
     exit 1
   fi
@@ -49,6 +49,10 @@ refuse() {
 refuse "CHANGELOG.md has no entry '## [1.4.9]'"
 echo "## [1.4.9]" >>tree/CHANGELOG.md
 refuse "not committed"
+echo 'need_packages() { :; }' >>tree/scripts/packages.sh
+git -C tree commit --quiet --all -m "An entry"
+refuse "the wheels need Python 3.10"
+[[ ! -e tree/dist ]] || { echo "something is made before it is refused" >&2; exit 1; }
 
 echo "1.4.9 1.4.9 2026-02-03 0123456" >tree/build-version
 expect "a source archive" "$(tree/cmake/version.sh)" "1\.4\.9 1\.4\.9 2026-02-03 0123456"
