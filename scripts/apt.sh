@@ -10,10 +10,8 @@ package_source() {
   local built released parts
   released=$(sed -n '1s/.*(\(.*\)).*/\1/p' debian/changelog)
   parts=$(sed -n 's/^#define G4LIDAR_VERSION_[A-Z]* //p' include/g4lidar/version.hpp | paste -s -d .)
-  if [[ $released != "$parts" ]]; then
-    echo "debian/changelog has version $released, include/g4lidar/version.hpp has $parts" >&2
-    return 1
-  fi
+  [[ $released == "$parts" ]] \
+    || { echo "debian/changelog has version $released, include/g4lidar/version.hpp has $parts" >&2; return 1; }
   built=$(cmake/version.sh "${@:3}")
   package_version=${built%% *}$2
   mkdir -p "$1"
@@ -36,8 +34,8 @@ find_cache() {
   export CCACHE_DIR CMAKE_C_COMPILER_LAUNCHER=ccache CMAKE_CXX_COMPILER_LAUNCHER=ccache
 }
 
-# build_packages <release> <suffix> <directory> <profile> [--final]: those of both processors, in a root of that
-# release. arm64 is cross-built; an emulator runs the programs where they write their man pages.
+# build_packages <release> <suffix> <directory> <profile> [--final]: those of both processors, or of `architectures`, in
+# a root of that release. arm64 is cross-built; an emulator runs the programs where they write their man pages.
 build_packages() (
   find_cache
   make_root "$1" build-essential ccache crossbuild-essential-arm64 debhelper qemu-user-static
@@ -45,7 +43,7 @@ build_packages() (
   mkdir -p "$debian_root/build" "$debian_root/ccache" "$CCACHE_DIR"
   mount --bind "$CCACHE_DIR" "$debian_root/ccache"
   package_source "$debian_root/build/libg4lidar" "$2" "${@:5}"
-  for architecture in amd64 arm64; do
+  for architecture in ${architectures:-amd64 arm64}; do
     run_quietly "Building for Debian ($1) and $architecture" \
       in_root env DEB_BUILD_OPTIONS="nocheck noautodbgsym terse parallel=$(nproc)" \
       bash -euo pipefail -s "$architecture" "nocheck${4:+,$4}" <<'IN_ROOT'

@@ -15,10 +15,7 @@ find_mirrors() {
     | awk -v release="$1" '$3 ~ /^(bookworm|trixie)(-updates|-security)?$/ { sub(/^[a-z]+/, release, $3); print }' \
     | sort --unique)
   debian_mirror=$(awk -v release="$1" '$3 == release { print $2; exit }' <<<"$debian_sources")
-  if [[ -z $debian_mirror ]]; then
-    echo "apt on this machine has no source for Debian 12 or 13 to make a root from" >&2
-    return 1
-  fi
+  [[ $debian_mirror ]] || { echo "apt on this machine has no source for Debian 12 or 13" >&2; return 1; }
 }
 
 # make_root <release> [<package>...]: creates one below $debian_root, with these packages, the package
@@ -39,18 +36,13 @@ make_root() {
     connect_root
   else
     echo "Making a minimal Debian ($release) ..."
-    if ! debootstrap --variant=minbase "$release" "$debian_root" "$debian_mirror" >"$debian_root.log" 2>&1; then
-      tail -n 20 "$debian_root.log" >&2
-      return 1
-    fi
+    debootstrap --variant=minbase "$release" "$debian_root" "$debian_mirror" >"$debian_root.log" 2>&1 \
+      || { tail -n 20 "$debian_root.log" >&2; return 1; }
     connect_root
     # shellcheck disable=SC2016  # the dollar is the other shell's
-    if (($# > 0)) && ! in_root env DEBIAN_FRONTEND=noninteractive bash -c 'apt-get update -qq &&
+    (($# == 0)) || in_root env DEBIAN_FRONTEND=noninteractive bash -c 'apt-get update -qq &&
       apt-get install --yes -qq --no-install-recommends -o Dpkg::Use-Pty=0 "$@" && apt-get clean' install "$@" \
-      >"$debian_root.log" 2>&1; then
-      tail -n 20 "$debian_root.log" >&2
-      return 1
-    fi
+      >"$debian_root.log" 2>&1 || { tail -n 20 "$debian_root.log" >&2; return 1; }
     # Without the directories that debootstrap and connect_root have mounted.
     tar --create --file "$archive.new" --directory "$debian_root" --one-file-system --exclude='./proc/*' \
       --exclude='./sys/*' .
@@ -60,7 +52,7 @@ make_root() {
 }
 
 # For scripts in the root, by `source /tmp/functions`. files: those of the root, without those of apt and the dynamic
-# linker. wait_for <command>...: at most a minute.
+# linker. wait_for <command>...: at most a minute. need_files <file>...: they exist, and have something in them.
 files() {
   find / -xdev '(' -path /proc -o -path /dev -o -path /tmp -o -path /var/cache -o -path /var/lib/apt \
     -o -path /var/lib/dpkg -o -path /var/log -o -path /etc/ld.so.cache ')' -prune -o -print | sort
@@ -74,6 +66,9 @@ wait_for() {
   echo "not within a minute: $*" >&2
   return 1
 }
+need_files() (
+  for each in "$@"; do test -s "$each" || { echo "$each is not there" >&2; exit 1; }; done
+)
 # runs <port>: whether g4-serve is there, and has a lidar that runs.
 runs() (
   exec 3<>"/dev/tcp/127.0.0.1/$1" || exit
@@ -99,7 +94,7 @@ connect_root() {
   # Pseudo-terminals of its own, for the simulated G4.
   mount -t devpts -o newinstance,gid=5,ptmxmode=666,mode=620 devpts "$debian_root/dev/pts"
   ln -sf pts/ptmx "$debian_root/dev/ptmx"
-  declare -f files wait_for runs >"$debian_root/tmp/functions"
+  declare -f files wait_for need_files runs >"$debian_root/tmp/functions"
 }
 
 remove_root() {
@@ -118,4 +113,10 @@ in_root() {
     ${G4LIDAR_TEST_SCALE:+"G4LIDAR_TEST_SCALE=$G4LIDAR_TEST_SCALE"} \
     ${G4LIDAR_TEST_SEED:+"G4LIDAR_TEST_SEED=$G4LIDAR_TEST_SEED"} \
     chroot "$debian_root" "$@"
+}
+
+# answer_apt: its apt asks nothing.
+answer_apt() {
+  printf '%s\n' 'APT::Install-Recommends "false";' 'APT::Get::Assume-Yes "true";' 'Acquire::Retries "3";' 'quiet "2";' \
+    'Dpkg::Use-Pty "0";' 'Acquire::http::Proxy::127.0.0.1 "DIRECT";' >"$debian_root/etc/apt/apt.conf.d/91answers"
 }

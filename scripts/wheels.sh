@@ -72,18 +72,14 @@ make_tools() {
   pack_wheel "$wheel" "$2" "$3"
 }
 
-# need_pythons: sets `pythons`, those for make_wheels. Without PYTHONS, prints a line "SKIPPED" for each wheel whose Python
-# is not here; --final refuses that.
+# need_pythons: sets `pythons`. Without PYTHONS a line "SKIPPED" names each missing one; --final refuses that.
 # shellcheck disable=SC2154
 need_pythons() {
   local python
   mapfile -t pythons < <(find_pythons)
   for python in 10 11 '1[2-9]'; do
     if printf '%s\n' "${pythons[@]}" | grep -q "^$python "; then continue; fi
-    if [[ ${final[*]} ]]; then
-      echo "scripts/release --final: the wheels need Python 3.$python" >&2
-      return 1
-    fi
+    if [[ ${final[*]} ]]; then refuse "the wheels need Python 3.$python"; fi
     if [[ ! ${PYTHONS:-} ]]; then echo "SKIPPED: the wheel for Python 3.$python, which is not here"; fi
   done
 }
