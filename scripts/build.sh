@@ -83,6 +83,33 @@ build() {
   run_quietly "Building $directory" cmake --build "$directory" --parallel "$(nproc)" "${targets[@]}"
 }
 
+# use_programs <program>...: G4_DUMP is g4-dump, G4_SERVE is g4-serve, and so on: a given one, or that of build/release.
+use_programs() {
+  local program name missing=()
+  for program in "$@"; do
+    name=${program//-/_}
+    name=${name^^}
+    if [[ -z ${!name:-} ]]; then missing+=("$program"); fi
+    export "$name=$(realpath -m "${!name:-build/release/$program}")"
+  done
+  if ((${#missing[@]} == 0)); then return; fi
+  configure_preset release
+  build build/release "${missing[@]}"
+}
+
+# fetch <directory> <python> <package>...: a virtual environment of this Python with these packages of PyPI. Without a
+# network the shell ends, with 77.
+fetch() {
+  if [[ -e $1/made_of && $(<"$1/made_of") == "${*:2}" ]]; then return; fi
+  rm -rf "$1"
+  "$2" -m venv "$1"
+  if ! run_quietly "Fetching ${*:3}" "$1/bin/pip" install --quiet --disable-pip-version-check "${@:3}"; then
+    echo "SKIPPED: ${*:3} could not be installed"
+    exit 77
+  fi
+  echo "${*:2}" >"$1/made_of"
+}
+
 # report_tests: reads the results that ctest has written, and prints the skipped and the failed tests
 # and the counts. A test in an executable that is one CTest test can be skipped, too.
 report_tests() {

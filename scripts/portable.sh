@@ -7,25 +7,11 @@ zig_version=0.17.1
 work=$PWD/build/portable
 glibc=2.28
 
-# fetch <name> <python> <package>...: $work/<name> is a virtual environment of this Python with these packages of PyPI.
-# Without a network the script ends, with 77.
-fetch() {
-  local place=$work/$1
-  if [[ -e $place/made_of && $(<"$place/made_of") == "${*:2}" ]]; then return; fi
-  rm -rf "$place"
-  run_quietly "Making a place for $1" "$2" -m venv "$place"
-  if ! run_quietly "Fetching ${*:3}" "$place/bin/pip" install --quiet --disable-pip-version-check "${@:3}"; then
-    echo "SKIPPED: ${*:3} could not be installed"
-    exit 77
-  fi
-  echo "${*:2}" >"$place/made_of"
-}
-
 # make_compiler <processor> <directory>: compilers for that processor there. zig has the baud rates of glibc 2.42, which
 # are numbers; an older glibc returns codes: include/termios.h.
 make_compiler() {
   local target=$1-linux-gnu python=$work/zig/bin/python tool
-  fetch zig python3 "ziglang==$zig_version"
+  fetch "$work/zig" python3 "ziglang==$zig_version"
   mkdir -p "$2/include"
   {
     echo '#include_next <termios.h>'
@@ -144,7 +130,7 @@ write_licences() {
 
 # write_sbom <version> <file>: what is linked into all that was made, as CycloneDX has it.
 write_sbom() {
-  fetch sbom python3 'cyclonedx-python-lib[json-validation]==11.12.0'
+  fetch "$work/sbom" python3 'cyclonedx-python-lib[json-validation]==11.12.0'
   "$work/sbom/bin/python" packaging/portable/sbom.py "$1" "$2" <"$work/linked-in"
 }
 

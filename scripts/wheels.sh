@@ -34,8 +34,8 @@ pack_wheel() {
 # headers of Python and the stubs, which need a module that runs, are those of x86_64, which is made first.
 make_module() {
   local wheels=$work/wheels/3.$1-$3 suffix=.cpython-3$1-$3-linux-gnu.so info cross=()
-  fetch "python-3.$1" "$2" "${wheel_needs[@]}"
   environment=$work/python-3.$1
+  fetch "$environment" "$2" "${wheel_needs[@]}"
   if [[ $3 != x86_64 ]]; then
     cross=(--config-settings=build.targets=_g4lidar)
   fi
