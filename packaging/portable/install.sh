@@ -89,6 +89,6 @@ if [ "$rules" ]; then
   apply_rules
 else
   echo "Without the udev rules, which work below /usr and /usr/local only. To install them:"
-  echo "  sudo cp $here/lib/udev/rules.d/*.rules /etc/udev/rules.d/ && sudo udevadm control --reload && sudo udevadm trigger"
+  echo "  sudo cp '$here'/lib/udev/rules.d/*.rules /etc/udev/rules.d/ && sudo udevadm control --reload && sudo udevadm trigger"
 fi
 case :$PATH: in *:"$prefix/bin":*) ;; *) echo "$prefix/bin is not in PATH: add it" ;; esac

@@ -36,7 +36,7 @@ constexpr std::array<words, problem_count> all_words{{
      "Correct the value or omit the option; every option has a default."},
     {problem::no_port, "no_port", "no serial port with a lidar was found",
      "Connect the lidar with a data cable and check `dmesg` for a new ttyUSB port; in a container, "
-     "pass the device through. Or name the port."},
+     "pass the device through. Or name the port; sim: is a simulated lidar."},
     {problem::several_ports, "several_ports", "more than one lidar is connected",
      "Name one: by its path, as serial:<number of the lidar>, or as usb:<USB path>."},
     {problem::permission, "permission", "this user has no permission to open it",
