@@ -2,17 +2,17 @@
 // Scans from the thread that reads, for the thread that uses them.
 #pragma once
 
-#include <algorithm>
 #include <chrono>
 #include <condition_variable>
 #include <cstddef>
 #include <cstdint>
 #include <mutex>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "g4lidar/core/model.hpp"
-#include "g4lidar/scan.hpp"
+#include "g4lidar/lidar.hpp"
 
 namespace g4lidar {
 
@@ -20,23 +20,21 @@ namespace g4lidar {
 /// open.*
 class scan_queue {
  public:
-  scan_queue(std::size_t depth, const model& model) : slots_(depth + 1) {
-    for (slot& each : slots_) each.points.reserve(largest_scan(model));
+  scan_queue(std::size_t depth, const model& model) : waiting_(depth) {
+    for (owned_scan& each : waiting_) each.points().reserve(largest_scan(model));
+    taken_.points().reserve(largest_scan(model));
   }
 
   /// Copies `found`. If there is no room, the oldest scan is dropped and counted. Never waits long.
   void put(const scan& found) {
     {
       const std::lock_guard lock(mutex_);
-      if (size_ + 1 == slots_.size()) {
+      if (size_ == waiting_.size()) {
         --size_;
         ++missed_;
       }
-      slot& to = slots_[put_];
-      to.points.assign(found.points.begin(), found.points.end());
-      to.about = found;
-      to.about.points = to.points;
-      put_ = (put_ + 1) % slots_.size();
+      waiting_[put_] = found;
+      put_ = (put_ + 1) % waiting_.size();
       ++size_;
       has_ended_ = false;
     }
@@ -64,9 +62,9 @@ class scan_queue {
     std::unique_lock lock(mutex_);
     changed_.wait_until(lock, deadline, [this] { return size_ > 0 || has_ended_; });
     if (size_ == 0) return std::nullopt;
-    const std::size_t at = (put_ + slots_.size() - size_) % slots_.size();
+    std::swap(taken_, waiting_[(put_ + waiting_.size() - size_) % waiting_.size()]);
     --size_;
-    return slots_[at].about;
+    return taken_.view();
   }
 
   /// Scans that were dropped.
@@ -76,15 +74,11 @@ class scan_queue {
   }
 
  private:
-  struct slot {
-    std::vector<point> points;
-    scan about;
-  };
-
   mutable std::mutex mutex_;
   std::condition_variable changed_;
-  std::vector<slot> slots_;  // the waiting ones, and the one that was taken last
-  std::size_t put_ = 0;      // the index of the next one
+  std::vector<owned_scan> waiting_;
+  owned_scan taken_;     // the last one that was taken: put() does not change it
+  std::size_t put_ = 0;  // the index of the next one
   std::size_t size_ = 0;
   std::uint64_t missed_ = 0;
   bool has_ended_ = false;

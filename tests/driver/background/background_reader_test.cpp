@@ -75,6 +75,7 @@ TEST(BackgroundReader, ProvidesScansAndCountsMissedOnes) {
   take(*one);
   const std::uint64_t missed_before = reader->counts().scans_missed;
   EXPECT_TRUE(comes_true([&] { return reader->counts().scans_missed > missed_before + 3; }));
+  for (const point& p : one->points) ASSERT_EQ(p.revolution, one->revolution) << "was changed";
   for (int i = 0; i < 20; ++i) {
     const auto next = reader->next_scan(test::patience);
     ASSERT_TRUE(next);
