@@ -61,8 +61,7 @@ packages_browser=(chromium chromium-driver fonts-dejavu-core python3-selenium)
 # scripts/sysroot.
 # shellcheck disable=SC2034
 packages_sysroot=(
-  libc6-dev libudev-dev libexpected-dev libcli11-dev libfmt-dev nlohmann-json3-dev libzstd-dev
-  zlib1g-dev
+  libc6-dev libudev-dev libexpected-dev libcli11-dev libfmt-dev nlohmann-json3-dev libzstd-dev zlib1g-dev
 )
 
 # What is linked into the portable archives, and how they are made and tried: scripts/release, scripts/ci/portable.

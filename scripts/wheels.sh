@@ -36,9 +36,7 @@ make_module() {
   local wheels=$work/wheels/3.$1-$3 suffix=.cpython-3$1-$3-linux-gnu.so info cross=()
   environment=$work/python-3.$1
   fetch "$environment" "$2" "${wheel_needs[@]}"
-  if [[ $3 != x86_64 ]]; then
-    cross=(--config-settings=build.targets=_g4lidar)
-  fi
+  if [[ $3 != x86_64 ]]; then cross=(--config-settings=build.targets=_g4lidar); fi
   rm -rf "$wheels"
   (
     cd "$work/source" || exit
