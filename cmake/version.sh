@@ -1,8 +1,9 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 # Prints the version of this tree in one line: as dpkg compares it, as pip does, the date and the commit; of a release
-# or a tree without history the first two are plain numbers, and the others "-". include/g4lidar/version.hpp has the
-# number of the newest release. Between releases the number of commits comes first, so that versions sort:
+# (--final) or a tree without history, which has "-" for the last two, the first two are plain numbers.
+# include/g4lidar/version.hpp has that of the newest release. Between releases the number of commits comes first, so
+# that versions sort:
 #   0.1.1~dev869+gabcdef0 0.1.1.dev869 2026-11-28 abcdef0
 # A source archive has this line in the file build-version; one of pip has its version in PKG-INFO.
 set -eu
@@ -13,12 +14,13 @@ number=$(sed -n 's/^#define G4LIDAR_VERSION_[A-Z]* //p' include/g4lidar/version.
 if [ -e PKG-INFO ]; then
   pip=$(sed -n '/^$/q; s/^Version: //p' PKG-INFO)
   echo "$(echo "$pip" | sed 's/\.dev/~dev/') $pip - -"
-elif [ "${1:-}" != --final ] && [ -e .git ] && commit=$(git rev-parse --short=7 HEAD 2>/dev/null) \
+elif [ -e .git ] && commit=$(git rev-parse --short=7 HEAD 2>/dev/null) \
   && [ "$(git rev-parse --is-shallow-repository)" = false ]; then
   count=$(git rev-list --count HEAD)
   next=${number%.*}.$((${number##*.} + 1))
-  date=$(TZ=UTC git log -1 --date=format-local:%Y-%m-%d --format=%cd)
-  echo "$next~dev$count+g$commit $next.dev$count $date $commit"
+  versions="$next~dev$count+g$commit $next.dev$count"
+  if [ "${1:-}" = --final ]; then versions="$number $number"; fi
+  echo "$versions $(TZ=UTC git log -1 --date=format-local:%Y-%m-%d --format=%cd) $commit"
 else
   echo "$number $number - -"
 fi

@@ -1,27 +1,36 @@
 # SPDX-License-Identifier: MIT
 # shellcheck shell=bash
-# Makes the Debian packages of the last commit for Debian 12 and 13, amd64 and arm64, and a signed tree of them for apt.
+# Makes the source archive of the last commit, of it the Debian packages for Debian 12 and 13, amd64 and arm64, and a
+# signed tree of them for apt.
 # Sourced by scripts/release, after scripts/{packages,build,root}.sh, and by scripts/package; needs bash.
 
-# package_source <directory> <suffix> [--final]: the last commit there, as dpkg-buildpackage reads it; sets
+# make_source <directory> [--final]: the source archive; sets `archive`, its file, and `version`.
+make_source() {
+  mkdir -p "$1"
+  cmake/version.sh "${@:2}" >"$1/build-version"
+  read -r version _ <"$1/build-version"
+  archive=$1/libg4lidar-$version.tar.gz
+  git archive --prefix="libg4lidar-$version/" --add-file="$1/build-version" HEAD | gzip -n9 >"$archive"
+}
+
+# package_source <directory> <suffix> <archive>: what the archive has, as dpkg-buildpackage reads it; sets
 # package_version, which ends in that suffix. Between releases it has the number of commits and the commit, so that
 # apt upgrades to a newer build.
 package_source() {
-  local built released parts
+  local released parts
   released=$(sed -n '1s/.*(\(.*\)).*/\1/p' debian/changelog)
   parts=$(sed -n 's/^#define G4LIDAR_VERSION_[A-Z]* //p' include/g4lidar/version.hpp | paste -s -d .)
   [[ $released == "$parts" ]] \
     || { echo "debian/changelog has version $released, include/g4lidar/version.hpp has $parts" >&2; return 1; }
-  built=$(cmake/version.sh "${@:3}")
-  package_version=${built%% *}$2
   mkdir -p "$1"
-  git archive HEAD | tar -x -C "$1"
-  echo "$built" >"$1/build-version"
+  tar -xzf "$3" -C "$1" --strip-components=1
+  package_version=$(cut -d ' ' -f 1 "$1/build-version")$2
   if [[ $package_version != "$released" ]]; then
     {
       printf 'libg4lidar (%s) unstable; urgency=medium\n\n  * A build of this version.\n\n' "$package_version"
       sed -n 's/^Maintainer: \(.*\)/ -- \1  /p' debian/control | tr -d '\n'
-      printf '%s\n\n' "$(TZ=UTC git log -1 --date=rfc-local --format=%cd)"
+      TZ=UTC date --rfc-email --reference "$1/debian/control" # the date of the commit
+      echo
       cat debian/changelog
     } >"$1/debian/changelog"
   fi
@@ -34,15 +43,15 @@ find_cache() {
   export CCACHE_DIR CMAKE_C_COMPILER_LAUNCHER=ccache CMAKE_CXX_COMPILER_LAUNCHER=ccache
 }
 
-# build_packages <release> <suffix> <directory> <profile> [--final]: those of both processors, or of `architectures`, in
-# a root of that release. arm64 is cross-built; an emulator runs the programs where they write their man pages.
+# build_packages <release> <suffix> <directory> <profile> <archive>: those of both processors, or of `architectures`,
+# in a root of that release. arm64 is cross-built; an emulator runs the programs where they write their man pages.
 build_packages() (
   find_cache
   make_root "$1" build-essential ccache crossbuild-essential-arm64 debhelper qemu-user-static
   # shellcheck disable=SC2154  # of scripts/root.sh
   mkdir -p "$debian_root/build" "$debian_root/ccache" "$CCACHE_DIR"
   mount --bind "$CCACHE_DIR" "$debian_root/ccache"
-  package_source "$debian_root/build/libg4lidar" "$2" "${@:5}"
+  package_source "$debian_root/build/libg4lidar" "$2" "$5"
   for architecture in ${architectures:-amd64 arm64}; do
     run_quietly "Building for Debian ($1) and $architecture" \
       in_root env DEB_BUILD_OPTIONS="nocheck noautodbgsym terse parallel=$(nproc)" \
@@ -59,13 +68,13 @@ IN_ROOT
   cp "$debian_root"/build/*.deb "$3"
 )
 
-# make_apt <directory> [--final]: the tree of both releases in its directory apt, and the public key in apt/g4lidar.asc.
+# make_apt <directory> <archive>: the tree of both releases in its directory apt, and the public key in apt/g4lidar.asc.
 make_apt() {
   local scratch tree=$1/apt key release
   scratch=$(mktemp -d -t g4lidar-apt.XXXXXX)
   mkdir -p "$scratch"/{bookworm,trixie,conf}
-  build_packages bookworm "" "$scratch/bookworm" "" "${@:2}"
-  build_packages trixie "~deb13" "$scratch/trixie" pkg.libg4lidar.ros2 "${@:2}" # all others are those of Debian 12
+  build_packages bookworm "" "$scratch/bookworm" "" "$2"
+  build_packages trixie "~deb13" "$scratch/trixie" pkg.libg4lidar.ros2 "$2" # all others are those of Debian 12
   mkdir -m 700 "$scratch/gnupg"
   local -x GNUPGHOME=$scratch/gnupg
   if [[ ${G4LIDAR_SIGNING_KEY:-} ]]; then

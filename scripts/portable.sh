@@ -154,12 +154,12 @@ check_programs() {
   done
 }
 
-# check_no_addresses <directory>: fails if a file in it has a path or the name of this machine.
+# check_no_addresses <directory> [<option of grep>]...: fails if a file in it has a path or the name of this machine.
 check_no_addresses() {
   local name patterns=(-e "$PWD" -e "$work")
   name=$(uname -n)
   if ((${#name} > 5)) && [[ $name != localhost ]]; then patterns+=(-e "$name"); fi
-  if grep --recursive --files-with-matches --text --fixed-strings "${patterns[@]}" "$1"; then
+  if grep --recursive --files-with-matches --text --fixed-strings "${patterns[@]}" "$@"; then
     echo "These files have a path or the name of this machine in them" >&2
     return 1
   fi

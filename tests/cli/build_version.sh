@@ -26,7 +26,7 @@ for each in 1 2 3; do git -C tree commit --quiet --allow-empty -m "$each"; done
 commit=$(git -C tree rev-parse --short=7 HEAD)
 dev="1\.4\.10~dev3\+g$commit 1\.4\.10\.dev3 2025-12-31 $commit"
 expect "three commits" "$(tree/cmake/version.sh)" "$dev"
-expect "a release" "$(tree/cmake/version.sh --final)" "$plain"
+expect "a release" "$(tree/cmake/version.sh --final)" "1\.4\.9 1\.4\.9 2025-12-31 $commit"
 git clone --quiet --depth 1 "file://$PWD/tree" shallow 2>/dev/null
 expect "a clone without history" "$(shallow/cmake/version.sh)" "$plain"
 rm -rf shallow
@@ -38,20 +38,21 @@ touch -d '2020-01-01' version.cpp
 cmake -DTO="$PWD/version.cpp" -P tree/cmake/build_version.cmake
 [[ $(date -r version.cpp +%Y) == 2020 ]] || { echo "an equal version is written again" >&2; exit 1; }
 
-# refuse <expected message>: scripts/release --final.
+# refuse <expected message> <part>: scripts/release --final.
 refuse() {
-  if PYTHONS=none tree/scripts/release --final --source --wheels >release.txt 2>&1; then
+  if PYTHONS=none G4LIDAR_SIGNING_KEY='' tree/scripts/release --final "$2" >release.txt 2>&1; then
     echo "scripts/release --final is not refused: $1" >&2
     exit 1
   fi
   grep -qF "$1" release.txt || { echo "not refused with '$1': $(<release.txt)" >&2; exit 1; }
 }
-refuse "CHANGELOG.md has no entry '## [1.4.9]'"
+refuse "CHANGELOG.md has no entry '## [1.4.9]'" --source
 echo "## [1.4.9]" >>tree/CHANGELOG.md
-refuse "not committed"
+refuse "not committed" --source
 echo 'need_packages() { :; }' >>tree/scripts/packages.sh
 git -C tree commit --quiet --all -m "An entry"
-refuse "the wheels need Python 3.10"
+refuse "G4LIDAR_SIGNING_KEY names no file" --apt
+refuse "the wheels need Python 3.10" --wheels
 [[ ! -e tree/dist ]] || { echo "something is made before it is refused" >&2; exit 1; }
 
 echo "1.4.9 1.4.9 2026-02-03 0123456" >tree/build-version
