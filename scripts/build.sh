@@ -139,7 +139,7 @@ report_tests() {
     END { printf "tests: %d passed, %d failed, %d skipped\n", passed, failed, skipped }'
 }
 
-# run_tests <preset> <ctest argument>...: three in parallel for each processor, because many tests wait most of their
+# run_tests <preset> <ctest argument>...: four in parallel for each processor, because many tests wait most of their
 # time. A test of a suite that computes takes the place of three. The time limit of a test is that of the preset,
 # multiplied for longer random tests (G4LIDAR_TEST_SCALE).
 # ctest counts a skipped test as passed: the last line does not. Each skipped test has a line
@@ -153,7 +153,7 @@ run_tests() {
   export RC_PARAMS=${RC_PARAMS:-seed=${G4LIDAR_TEST_SEED:-1}}
   rm -f "$results"
   # All output is kept: the skipped tests of an executable are named in it.
-  ctest --preset "$preset" --parallel "$((3 * $(nproc)))" --output-junit "$results" \
+  ctest --preset "$preset" --parallel "$((4 * $(nproc)))" --output-junit "$results" \
     --test-output-size-passed 10000000 "${longer[@]}" "$@" || code=$?
   if [[ -e $results ]]; then report_tests <"$results"; fi
   return "$code"
