@@ -85,8 +85,12 @@ TEST_F(ServiceMerging, WithoutOneOfThem_TheOtherIsGiven_AndAWarning) {
   ASSERT_TRUE(wait_for_scan(false));
   ASSERT_TRUE(comes_true([&] { return service->status(0).state == reader_state::lost; }));
   const std::size_t before = heard.number_of_scans();
-  ASSERT_TRUE(heard.wait(
-      [&] { return heard.scans.size() > before + 1 && heard.scans.back().kept_of_each[0] == 0; }));
+  std::vector<point> last;  // on a busy machine a scan may have no points
+  ASSERT_TRUE(heard.wait([&] {
+    last = heard.scans.back().kept;
+    return heard.scans.size() > before + 1 && heard.scans.back().kept_of_each[0] == 0 &&
+           !last.empty();
+  }));
   EXPECT_EQ(service->status(1).state, reader_state::running);
   const auto found = service->motion_diagnosis();
   ASSERT_EQ(found.size(), 1U);
@@ -94,8 +98,7 @@ TEST_F(ServiceMerging, WithoutOneOfThem_TheOtherIsGiven_AndAWarning) {
   EXPECT_THAT(found[0].message, HasSubstr("front"));
   EXPECT_EQ(service->change_now(0, {{"frequency", 8.0}}, patience), "the lidar is not connected");
   service->stop();
-  EXPECT_EQ(heard.scans.back().kept_of_each[0], 0U);
-  EXPECT_LT(most_of(distances_to_walls(heard.scans.back().kept, {})), 0.05);
+  EXPECT_LT(most_of(distances_to_walls(last, {})), 0.05);
   const auto lost = std::ranges::find(heard.events, lidar_event::kind::lost,
                                       &decltype(heard.events)::value_type::first);
   ASSERT_NE(lost, heard.events.end());
