@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 # Prints the version of this tree in one line: as dpkg compares it, as pip does, the date and the commit; of a release
-# (--final) or a tree without history, which has "-" for the last two, the first two are plain numbers.
+# (--final) the first two are plain numbers; without history, too, and the others are "-".
 # include/g4lidar/version.hpp has that of the newest release. Between releases the number of commits comes first, so
 # that versions sort:
 #   0.1.1~dev869+gabcdef0 0.1.1.dev869 2026-11-28 abcdef0
@@ -15,7 +15,7 @@ if [ -e PKG-INFO ]; then
   pip=$(sed -n '/^$/q; s/^Version: //p' PKG-INFO)
   echo "$(echo "$pip" | sed 's/\.dev/~dev/') $pip - -"
 elif [ -e .git ] && commit=$(git rev-parse --short=7 HEAD 2>/dev/null) \
-  && [ "$(git rev-parse --is-shallow-repository)" = false ]; then
+  && { [ "${1:-}" = --final ] || [ "$(git rev-parse --is-shallow-repository)" = false ]; }; then
   count=$(git rev-list --count HEAD)
   next=${number%.*}.$((${number##*.} + 1))
   versions="$next~dev$count+g$commit $next.dev$count"

@@ -18,21 +18,22 @@ make_source() {
 # apt upgrades to a newer build.
 package_source() {
   local released parts
-  released=$(sed -n '1s/.*(\(.*\)).*/\1/p' debian/changelog)
-  parts=$(sed -n 's/^#define G4LIDAR_VERSION_[A-Z]* //p' include/g4lidar/version.hpp | paste -s -d .)
-  [[ $released == "$parts" ]] \
-    || { echo "debian/changelog has version $released, include/g4lidar/version.hpp has $parts" >&2; return 1; }
   mkdir -p "$1"
   tar -xzf "$3" -C "$1" --strip-components=1
+  released=$(sed -n '1s/.*(\(.*\)).*/\1/p' "$1/debian/changelog")
+  parts=$(sed -n 's/^#define G4LIDAR_VERSION_[A-Z]* //p' "$1/include/g4lidar/version.hpp" | paste -s -d .)
+  [[ $released == "$parts" ]] \
+    || { echo "debian/changelog has version $released, include/g4lidar/version.hpp has $parts" >&2; return 1; }
   package_version=$(cut -d ' ' -f 1 "$1/build-version")$2
   if [[ $package_version != "$released" ]]; then
     {
       printf 'libg4lidar (%s) unstable; urgency=medium\n\n  * A build of this version.\n\n' "$package_version"
-      sed -n 's/^Maintainer: \(.*\)/ -- \1  /p' debian/control | tr -d '\n'
+      sed -n 's/^Maintainer: \(.*\)/ -- \1  /p' "$1/debian/control" | tr -d '\n'
       TZ=UTC date --rfc-email --reference "$1/debian/control" # the date of the commit
       echo
-      cat debian/changelog
-    } >"$1/debian/changelog"
+      cat "$1/debian/changelog"
+    } >"$1/changelog"
+    mv "$1/changelog" "$1/debian/changelog"
   fi
 }
 
@@ -73,8 +74,6 @@ make_apt() {
   local scratch tree=$1/apt key release
   scratch=$(mktemp -d -t g4lidar-apt.XXXXXX)
   mkdir -p "$scratch"/{bookworm,trixie,conf}
-  build_packages bookworm "" "$scratch/bookworm" "" "$2"
-  build_packages trixie "~deb13" "$scratch/trixie" pkg.libg4lidar.ros2 "$2" # all others are those of Debian 12
   mkdir -m 700 "$scratch/gnupg"
   local -x GNUPGHOME=$scratch/gnupg
   if [[ ${G4LIDAR_SIGNING_KEY:-} ]]; then
@@ -84,6 +83,9 @@ make_apt() {
     gpg --batch --quiet --passphrase '' --quick-generate-key 'libg4lidar, a key for tests' ed25519 sign never
   fi
   key=$(gpg --batch --list-secret-keys --with-colons | awk -F: '$1 == "fpr" { print $10; exit }')
+  [[ $key ]] || { echo "$G4LIDAR_SIGNING_KEY has no secret key" >&2; return 1; }
+  build_packages bookworm "" "$scratch/bookworm" "" "$2"
+  build_packages trixie "~deb13" "$scratch/trixie" pkg.libg4lidar.ros2 "$2" # all others are those of Debian 12
   for release in bookworm trixie; do
     printf '%s\n' 'Origin: libg4lidar' 'Label: libg4lidar' "Codename: $release" 'Architectures: amd64 arm64' \
       'Components: main' "SignWith: $key" ''
