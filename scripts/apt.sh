@@ -70,9 +70,10 @@ IN_ROOT
 )
 
 # make_apt <directory> <archive>: the tree of both releases in its directory apt, and the public key in apt/g4lidar.asc.
-make_apt() {
+make_apt() (
   local scratch tree=$1/apt key release
   scratch=$(mktemp -d -t g4lidar-apt.XXXXXX)
+  trap 'gpgconf --kill all; rm -rf "$scratch"' EXIT # it has the secret key
   mkdir -p "$scratch"/{bookworm,trixie,conf}
   mkdir -m 700 "$scratch/gnupg"
   local -x GNUPGHOME=$scratch/gnupg
@@ -97,6 +98,4 @@ make_apt() {
   "${include[@]}" bookworm "$scratch"/bookworm/*.deb
   rm "$scratch"/bookworm/g4lidar-ros2_*
   "${include[@]}" trixie "$scratch"/{bookworm,trixie}/*.deb
-  gpgconf --kill all
-  rm -rf "$scratch"
-}
+)

@@ -98,6 +98,7 @@ TEST_F(ServiceMerging, WithoutOneOfThem_TheOtherIsGiven_AndAWarning) {
   EXPECT_THAT(found[0].message, HasSubstr("front"));
   EXPECT_EQ(service->change_now(0, {{"frequency", 8.0}}, patience), "the lidar is not connected");
   service->stop();
+  EXPECT_EQ(heard.scans.back().kept_of_each[0], 0U);
   EXPECT_LT(most_of(distances_to_walls(last, {})), 0.05);
   const auto lost = std::ranges::find(heard.events, lidar_event::kind::lost,
                                       &decltype(heard.events)::value_type::first);

@@ -142,7 +142,7 @@ TEST_P(Callbacks, EveryFunctionThatMayBeCalledThere) {
     expect(std::chrono::steady_clock::now() - begun < patience, "next_scan() does not wait");
     expect(of.points().written() == 0, "points()");
     expect(!of.failed(), "failed()");
-    expect(of.counts().scans < 1'000'000'000, "counts()");
+    expect(of.counts().points_missed <= of.counts().stream.points, "counts()");
     expect(!of.next_event(), "next_event()");
     expect(of.status().state != reader_state::ended, "status()");
     expect(of.wall_ns(0) != 0, "wall_ns()");
