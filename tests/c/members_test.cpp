@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Members of structures: each option has its effect, and each value is that of the simulated device.
 #include <cmath>
-#include <cstdlib>
-#include <string>
 #include <vector>
 
 #include "c_handles.hpp"

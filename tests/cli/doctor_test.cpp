@@ -168,7 +168,8 @@ TEST_F(Doctor, AShortRecordingOfAHealthyLidar_HasNoFault) {
   for (const std::string word : {"g4", "x2", "x4", "t-mini-plus", "tg15"}) {
     for (const char* const scans : {"1", "3"}) {
       const std::string file = path(word + scans + ".mcap");
-      ASSERT_EQ(run({"record", "-n", scans, "sim:?model=" + word, "-o", file}).code, 0);
+      const outcome done = run({"record", "-n", scans, "sim:?model=" + word, "-o", file});
+      ASSERT_EQ(done.code, 0) << done.err;
       EXPECT_EQ(diagnoses_of(stages_of(run({"doctor", "--json", file}))),
                 std::vector<std::string>{})
           << word << scans;

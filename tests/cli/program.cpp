@@ -99,6 +99,10 @@ program::~program() {
   close_one(out_);
   close_one(err_);
   if (pid_ <= 0) return;
+  // A killed simulator leaves its link, which can lead to the pseudo-terminal of another test.
+  ::kill(pid_, SIGTERM);
+  if (g4lidar::test::comes_true([&] { return ::waitpid(pid_, nullptr, WNOHANG) != 0; })) return;
+  ADD_FAILURE() << "SIGTERM does not end it";
   ::kill(pid_, SIGKILL);
   ::waitpid(pid_, nullptr, 0);
 }

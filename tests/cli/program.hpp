@@ -41,7 +41,7 @@ struct outcome {
   long max_rss_kib = 0;  ///< The most memory it had.
 };
 
-/// The program while it runs. Killed if nobody waits for it. With VALGRIND in the environment under valgrind: its exit
+/// The program while it runs. Terminated if nobody waits for it. With VALGRIND in the environment under valgrind: its exit
 /// code is 9 after an error.
 class program {
  public:
