@@ -10,7 +10,6 @@
 #include <cstdint>
 #include <limits>
 #include <string>
-#include <vector>
 
 #include "clock_errors.hpp"
 #include "support/allocation_count.hpp"
