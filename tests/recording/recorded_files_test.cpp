@@ -8,9 +8,7 @@
 #include <cerrno>
 #include <cmath>
 #include <csignal>
-#include <limits>
 #include <numeric>
-#include <random>
 
 #include "made_recording.hpp"
 #include "recorded_run.hpp"

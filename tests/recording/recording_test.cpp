@@ -6,9 +6,6 @@
 #include <sys/resource.h>
 
 #include <cerrno>
-#include <csignal>
-#include <limits>
-#include <numeric>
 #include <random>
 
 #include "made_recording.hpp"

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <set>
 
 #include "made_recording.hpp"
 #include "recorded_run.hpp"

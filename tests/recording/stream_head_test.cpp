@@ -13,7 +13,6 @@
 #include <cstdint>
 #include <fstream>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "support/family_reference.hpp"
