@@ -15,7 +15,6 @@
 #include <random>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "discovery/fitting_models.hpp"
 #include "support/patience.hpp"

@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 #include <stdlib.h>
 
-#include <array>
 #include <cstdint>
 #include <cstdlib>
 #include <filesystem>

@@ -3,7 +3,6 @@
 // with many points are read by NumPy and plyfile in scripts/ci/foreign-readers.
 #include <gmock/gmock.h>
 
-#include <array>
 #include <cstdint>
 #include <cstring>
 #include <string>

@@ -2,7 +2,6 @@
 // A scan as a picture: where each point is drawn, and which are omitted.
 #include <gmock/gmock.h>
 
-#include <array>
 #include <string>
 #include <string_view>
 #include <vector>

@@ -4,8 +4,6 @@
 
 #include <limits>
 #include <string>
-#include <utility>
-#include <vector>
 
 #include "g4lidar/sim/scanner.hpp"
 

@@ -10,7 +10,6 @@
 #include <fstream>
 #include <string>
 #include <variant>
-#include <vector>
 
 #include "g4lidar/lidar.hpp"
 #include "g4lidar/sim/setup.hpp"
