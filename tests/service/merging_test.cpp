@@ -172,6 +172,7 @@ TEST_F(ServiceMerging, ByTheScans_TheRobotMovesAhead) {
   begin_both({.deskew = deskewing::by_scans}, "", ahead);
   // Where the scans do not show the motion for a while, another map begins; a busy machine loses scans.
   std::optional<service_scan> first;
+  int right = 0;  // more than wrong ones
   ASSERT_TRUE(heard.wait([&] {
     if (heard.scans.empty() || !heard.scans.back().about.place) return false;
     const service_scan& now = heard.scans.back().about;
@@ -179,7 +180,8 @@ TEST_F(ServiceMerging, ByTheScans_TheRobotMovesAhead) {
     const double seconds = static_cast<double>(now.first_ns - first->first_ns) * 1e-9;
     if (seconds < 1.5) return false;
     const pose_2d way = inverse(std::exchange(first, now)->place->pose) * now.place->pose;
-    return std::abs(way.x_m - 0.2 * seconds) < 0.1 && std::abs(way.y_m) < 0.1;
+    right += std::abs(way.x_m - 0.2 * seconds) < 0.1 && std::abs(way.y_m) < 0.1 ? 1 : -1;
+    return right >= 2;
   })) << "the robot drives for 20 s";
 }
 
